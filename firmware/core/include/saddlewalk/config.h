@@ -1,0 +1,56 @@
+/** Everything that may be fitted to a person or a device. Start from saddle_config_default(), then
+ *  override; an all-zero configuration fails the check. Defaults are the paper's. */
+#ifndef SADDLEWALK_CONFIG_H
+#define SADDLEWALK_CONFIG_H
+
+#include <stddef.h>
+
+typedef enum {
+    SADDLE_ANKLE_ERF = 0,   /**< the paper's ankle strategy, [E12]; z jumps at heel strike */
+    SADDLE_ANKLE_RIGID = 1, /**< the inverted pendulum: the leg keeps its length */
+    SADDLE_ANKLE_COUNT
+} saddle_ankle_t;
+
+/** Floats first and in the order of saddle_config_field(). */
+typedef struct {
+    float body_mass_kg;
+    float body_height_m;
+    float pendulum_ratio;             /**< pendulum length / body height, [E1] */
+    float cop_range_m;                /**< d_h: CoP to heel and metatarsal pivots, [E11] [E16] */
+    float step_width_slow_m;          /**< below step_width_slow_speed_m_s, [E3] */
+    float step_width_fast_m;          /**< above step_width_fast_speed_m_s, [E3] */
+    float step_width_slow_speed_m_s;
+    float step_width_fast_speed_m_s;
+    float step_width_slope_s;         /**< between the two speeds, [E3] */
+    float step_width_intercept_m;
+    float half_step_slope_s;          /**< [E4] */
+    float half_step_intercept_m;
+    float vertical_slope_s;           /**< peak-to-peak vertical CoM excursion, [E5] */
+    float vertical_intercept_m;
+    float peak_speed_m_s;             /**< where reach and XCoM limit meet, [E6] */
+    float ankle_time_constant_s;      /**< of the erf profile, [E12] */
+    float heel_strike_max_rad;        /**< a larger commanded angle is limited */
+    float swing_clearance_m;          /**< height of the swing foot at mid-swing, [E10] */
+    float tick_max_s;                 /**< the plan advances by no more than this in one tick */
+    float measurement_max_age_s;      /**< older measurements are not used */
+    saddle_ankle_t ankle;
+} saddle_config_t;
+
+/** One float field of the configuration and the values that saddle_config_check() accepts. */
+typedef struct {
+    const char *name; /**< as in saddle_config_t and in configuration files */
+    size_t offset;    /**< in saddle_config_t, bytes */
+    float min, max;
+} saddle_config_field_t;
+
+/** The paper's parameters for a body. The arguments are judged by saddle_config_check(). */
+saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg);
+
+/** Name of the first field that is not finite, out of range or at odds with the others;
+ *  NULL when the configuration can be used. The text is constant and never freed. */
+const char *saddle_config_check(const saddle_config_t *config);
+
+/** The float field at an index, NULL past the last. For hosts that set fields by name. */
+const saddle_config_field_t *saddle_config_field(size_t index);
+
+#endif

@@ -1,0 +1,37 @@
+/** Saddle space: the frame of the two CoPs, the base of support in it, and gravity on the saddle. */
+#ifndef SADDLEWALK_SADDLE_SPACE_H
+#define SADDLEWALK_SADDLE_SPACE_H
+
+#include <saddlewalk/saddle_types.h>
+#include <stdbool.h>
+
+#define SADDLE_BOS_VERTICES 16
+
+/** CoPs closer than this make saddle space undefined. */
+#define SADDLE_FEET_DISTANCE_MIN_M 1.0e-3f
+
+/** Base of support: the disc around the midpoint of the CoPs, cut at +-half_depth_m along x_S. */
+typedef struct {
+    saddle_vec2_t centre_m;
+    saddle_vec2_t axis_x;  /**< unit vector x_S; lambda = atan2(axis_x.y, axis_x.x) */
+    float radius_m;        /**< half the distance between the CoPs */
+    float half_depth_m;    /**< d_h */
+    bool defined;          /**< false: feet together, every number above is 0 */
+} saddle_bos_t;
+
+/** [E15] [E16] */
+saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m);
+
+/** [E17] Signed Euclidean distance to the border, positive inside. 0 if the BoS is undefined. */
+float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m);
+
+/** For display: a convex polygon inscribed in the BoS, counter-clockwise, every vertex on the
+ *  border. Zeros if the BoS is undefined. */
+void saddle_bos_polygon(const saddle_bos_t *bos, saddle_vec2_t vertices_m[SADDLE_BOS_VERTICES]);
+
+/** [E18] Gravity along the energy surface, from the leg that carries (the nearer CoP).
+ *  False, and zero force, where the pendulum does not reach. */
+bool saddle_gravity_force(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m, float pendulum_m,
+                          float mass_kg, saddle_vec2_t *force_n);
+
+#endif

@@ -1,0 +1,67 @@
+/** Saddlewalk: one walking-planner and stability-supervisor update per call, without a heap.
+ *
+ *      saddle_context_t context;                        // yours, static, one per walker
+ *      saddle_config_t config = saddle_config_default(1.79f, 63.3f);
+ *      saddle_init(&context, &config);
+ *      every 80 ms:  saddle_tick(&context, &input, &output);
+ *
+ *  Nothing is kept of the pointers; nothing is shared between contexts; the same inputs give the
+ *  same bits on every compiler and target that honours -ffp-contract=off. */
+#ifndef SADDLEWALK_SADDLEWALK_H
+#define SADDLEWALK_SADDLEWALK_H
+
+#include <saddlewalk/config.h>
+#include <saddlewalk/gait_model.h>
+#include <saddlewalk/planner.h>
+#include <saddlewalk/saddle_space.h>
+#include <saddlewalk/supervisor.h>
+#include <saddlewalk/version.h>
+#include <stdint.h>
+
+/** Did the call work? What the answer is worth is told by plan.valid and scores.valid. */
+typedef enum {
+    SADDLE_OK = 0,
+    SADDLE_ERROR_NULL = 1,          /**< an argument is NULL */
+    SADDLE_ERROR_CONFIG = 2,        /**< saddle_config_check() names the field */
+    SADDLE_ERROR_UNINITIALISED = 3, /**< saddle_init() has not succeeded on this context */
+    SADDLE_ERROR_TIME = 4           /**< time_us went backwards: no plan, no scores, state kept */
+} saddle_status_t;
+
+typedef struct {
+    uint64_t time_us; /**< the caller's monotonic clock, any origin */
+    saddle_command_t command;
+    saddle_measurement_t measurement;
+} saddle_input_t;
+
+/** status: did the call work; limits: what clamped the plan; faults: which inputs were not used. */
+typedef struct {
+    saddle_status_t status;
+    uint32_t limits; /**< saddle_limit_t bits */
+    uint32_t faults; /**< saddle_fault_t bits */
+    saddle_plan_t plan;
+    saddle_scores_t plan_scores; /**< of the planned posture, in the frame of the plan */
+    saddle_scores_t scores;      /**< of the measured posture, in the frame of the CoM */
+} saddle_output_t;
+
+/** Caller-owned state; treat the fields as private. */
+typedef struct {
+    uint32_t initialised;
+    saddle_config_t config;
+    saddle_body_t body;
+    saddle_planner_t planner;
+    saddle_supervisor_t supervisor;
+    saddle_command_t command; /**< the last usable one */
+    uint64_t last_time_us;
+    bool ticked;
+} saddle_context_t;
+
+/** Copy and check the configuration and reset the context. On an error the context stays
+ *  uninitialised and every tick on it says so. May be called again at any time. */
+saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *config);
+
+/** One update. Writes all of *output on every path; on an error (its return value, also in
+ *  output->status) nothing in it is valid. No loops over data: the cost hardly varies. */
+saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
+                            saddle_output_t *output);
+
+#endif
