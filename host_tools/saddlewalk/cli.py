@@ -1,0 +1,46 @@
+"""The `saddlewalk` command: one module per subcommand in `saddlewalk.commands`."""
+
+import argparse
+import importlib
+import os
+import sys
+from typing import NoReturn
+
+from saddlewalk import __version__
+from saddlewalk.errors import UserError
+
+COMMANDS = ("demo", "plan", "supervise", "emulate", "replay", "monitor")
+
+
+class _Parser(argparse.ArgumentParser):
+    """A wrong option is one line, not a page of usage."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+def parser() -> argparse.ArgumentParser:
+    root = _Parser(
+        prog="saddlewalk",
+        description="Plan a walk and judge its stability on the embedded core, live or offline.",
+    )
+    root.add_argument("--version", action="version", version=f"saddlewalk {__version__}")
+    subparsers = root.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name in COMMANDS:
+        importlib.import_module(f"saddlewalk.commands.{name}").add_parser(subparsers)
+    return root
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run one subcommand. 0: done and sound; 1: done, and the result is bad; 2: bad input."""
+    args = parser().parse_args(argv)
+    try:
+        return args.run(args)
+    except UserError as error:
+        print(f"saddlewalk {args.command}: {error}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except KeyboardInterrupt:
+        return 130
