@@ -1,0 +1,38 @@
+"""The core needs nothing but sqrtf and keeps no globals: its archive's symbols must say so.
+
+usage: check_symbols.py NM ARCHIVE
+
+A libc call, a hidden double operation on a target without doubles, or a variable outside the
+caller's context shows up here by name.
+"""
+
+import subprocess
+import sys
+
+# __stack_chk_fail: some distributions' compilers harden every function with it by default.
+ALLOWED = {"sqrtf", "__stack_chk_fail", "_GLOBAL_OFFSET_TABLE_"}
+
+
+def symbols(nm: str, archive: str) -> list[tuple[str, str]]:
+    """(name, nm's type letter) of every symbol in every member."""
+    command = [nm, "--format=posix", archive]
+    lines = subprocess.run(command, check=True, text=True, stdout=subprocess.PIPE).stdout
+    return [tuple(line.split()[:2]) for line in lines.splitlines() if not line.endswith("]:")]
+
+
+def main() -> None:
+    found = symbols(*sys.argv[1:])
+    if not found:
+        sys.exit(f"{sys.argv[2]} has no symbols at all")
+    defined = {name for name, kind in found if kind not in "Uw"}
+    needed = sorted({name for name, kind in found if kind in "Uw"} - defined - ALLOWED)
+    variables = sorted({name for name, kind in found if kind in "BbCDdGgSs"})
+    for name in needed:
+        print(f"the core calls {name}, which is not part of it")
+    for name in variables:
+        print(f"the core has the variable {name}, which is not in the caller's context")
+    sys.exit(bool(needed or variables))
+
+
+if __name__ == "__main__":
+    main()

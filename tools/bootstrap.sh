@@ -1,0 +1,30 @@
+#!/bin/sh
+# bootstrap.sh PYTHON VENV: check what only the system can provide, then make the virtual
+# environment VENV. Whatever is missing is said in one line with the command that installs it.
+set -eu
+python=$1
+venv=$2
+
+fail() {
+    echo "saddlewalk: $*" >&2
+    exit 1
+}
+
+command -v "$python" >/dev/null || fail "python3 is missing: apt-get install python3 python3-venv"
+"$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
+    fail "$("$python" --version) is too old: 3.11 or newer is needed, name one with make PYTHON=..."
+
+missing=''
+packages=''
+need() {
+    missing="$missing${missing:+, }$1"
+    packages="$packages $2"
+}
+"$python" -c 'import ensurepip, venv' 2>/dev/null || need "python's venv module" python3-venv
+printf '#include <stdio.h>\nint main(void) { return 0; }\n' |
+    "${CC:-cc}" -x c - -o /dev/null 2>/dev/null || need 'a C compiler' 'gcc libc6-dev'
+"$python" -c 'import ctypes; ctypes.CDLL("libglib-2.0.so.0")' 2>/dev/null ||
+    need 'libglib-2.0 (for LCM)' libglib2.0-0
+[ -z "$missing" ] || fail "missing: $missing; as root: apt-get install -y$packages"
+
+"$python" -m venv --clear "$venv"
