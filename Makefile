@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo test test-clang test-sanitize format clean help
+.PHONY: build demo test test-clang test-sanitize samples format clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -32,6 +32,8 @@ test-sanitize: build-sanitize/build.ninja .venv/installed-test ## unit and host-
 		--junit-xml build-sanitize/reports/pytest.xml
 	@$(BIN)/python tests/summary.py build-sanitize/reports/ctest.xml build-sanitize/reports/pytest.xml
 
+samples: .venv/installed-samples ## recorded walks, for saddlewalk replay --sample
+
 format: .venv/installed-test ## lay out the Python code
 	@$(BIN)/ruff check --fix .
 	@$(BIN)/ruff format .
@@ -50,11 +52,11 @@ build-sanitize/build.ninja: PRESET := sanitize
 	@$(BIN)/cmake --preset $(PRESET) --fresh --log-level=WARNING
 	@touch $@
 
-.venv/bin/python:
+.venv/bin/pip:
 	@tools/bootstrap.sh $(PYTHON) .venv
 
 # .venv/installed-EXTRA: this package, editable, and what its optional dependency EXTRA names.
-.venv/installed-build: .venv/bin/python
+.venv/installed-build: .venv/bin/pip
 .venv/installed-test .venv/installed-samples: .venv/installed-build
 .venv/installed-%: pyproject.toml requirements.lock firmware/core/include/saddlewalk/version.h
 	@echo "Installing Python packages: $*"
