@@ -1,0 +1,118 @@
+/**
+ * Saddlewalk on CAN: bytes to structs and back. Knows no bus, clock, heap or global.
+ *
+ * saddlewalk.dbc is the only source of identifiers, positions and scales; the code that cantools
+ * writes from it does the packing. This layer adds what a DBC cannot say:
+ *
+ *     byte 0      CRC-8 SAE J1850 over the identifier, low byte first, then bytes 1 to 7
+ *     byte 1      low 4 bits: alive counter, one more (modulo 16) each time the message is sent
+ *     bytes 1..7  signals, little endian
+ *
+ * Every physical number is a signed 16-bit signal. A number beyond its range is sent as the end
+ * of the range, never wrapped. A number that is not finite, or whose result is not valid, is sent
+ * as -32768, not available, and received as NaN, which saddle_tick() reports as a fault.
+ *
+ * No pointer is kept. Every function is re-entrant and takes constant time, mostly that of the
+ * CRC: 72 shifts a frame. Stack under 300 bytes. Of the C library it wants memset() and roundf().
+ *
+ *     on a frame:  switch (saddle_wire_accept(&receiver, id, data, length)) {
+ *                  case SADDLE_WIRE_NONE: break;
+ *                  case SADDLE_WIRE_COMMAND: saddle_wire_decode_command(data, &command); break;
+ *                  default: saddle_wire_decode_measured(message, data, &measurement); }
+ *     every tick:  saddle_wire_encode_output(&output, &health, counter++, frames);
+ */
+#ifndef SADDLEWALK_WIRE_H
+#define SADDLEWALK_WIRE_H
+
+#include <saddlewalk/saddlewalk.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/** Every frame is a classic CAN data frame of this many bytes with an 11-bit identifier. */
+#define SADDLE_WIRE_LENGTH 8u
+
+/** Frames of one output: the plan (8), the scores (3), and HEALTH as the last. */
+#define SADDLE_WIRE_OUTPUT_FRAMES 12u
+
+/** Frames of one measurement: CoM, left foot, right foot. */
+#define SADDLE_WIRE_MEASURED_FRAMES 3u
+
+typedef struct {
+    uint16_t id;
+    uint8_t data[SADDLE_WIRE_LENGTH];
+} saddle_frame_t;
+
+/** What HEALTH says beside the output. Both saturate at 65535 on the wire. */
+typedef struct {
+    uint32_t late_ticks;
+    uint32_t rejected_frames;
+} saddle_wire_health_t;
+
+/** The messages that the firmware receives. */
+typedef enum {
+    SADDLE_WIRE_NONE = -1, /**< the frame was refused, and counted */
+    SADDLE_WIRE_COMMAND = 0,
+    SADDLE_WIRE_MEASURED_COM = 1,
+    SADDLE_WIRE_MEASURED_LEFT = 2,
+    SADDLE_WIRE_MEASURED_RIGHT = 3,
+    SADDLE_WIRE_MESSAGE_COUNT
+} saddle_wire_message_t;
+
+/** Alive counter of one received message. */
+typedef struct {
+    uint8_t last;      /**< of the last frame accepted */
+    uint8_t candidate; /**< of the last frame out of step: the next may follow this one instead */
+    bool seen;
+} saddle_wire_alive_t;
+
+/** Caller-owned; start from all zeros. The counts may be read at any time and wrap at 2^32. */
+typedef struct {
+    saddle_wire_alive_t alive[SADDLE_WIRE_MESSAGE_COUNT];
+    uint32_t accepted;
+    uint32_t malformed;   /**< wrong length, or an identifier that the firmware does not receive */
+    uint32_t bad_crc;
+    uint32_t bad_version; /**< COMMAND of another wire version */
+    uint32_t bad_counter; /**< repeated, or out of step */
+} saddle_wire_receiver_t;
+
+/** CRC-8 SAE J1850: polynomial 0x1D, start 0xFF, final inversion. "123456789" gives 0x4B. */
+uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length);
+
+/** Alive counter of a frame, 0 to 15. */
+uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH]);
+
+/**
+ * Judge one received frame: which message it is, or SADDLE_WIRE_NONE. Exactly one count of the
+ * receiver moves. data is read only if length is SADDLE_WIRE_LENGTH; any bytes are safe.
+ * Counter rule, per message: the first frame is accepted, then one that is 1 to 4 ahead of the
+ * last accepted. A repeat is refused. Any other is refused too, but the next frame may be 1 to 4
+ * ahead of it instead: a sender that restarted loses one frame. A refused frame never changes the
+ * last accepted counter.
+ */
+saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint32_t id,
+                                         const uint8_t *data, size_t length);
+
+/** Data of an accepted SADDLE_WIRE_COMMAND. The mode is 0 to 15: the core judges it. */
+void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_command_t *command);
+
+/** Data of an accepted SADDLE_WIRE_MEASURED_xxx: writes that part of the measurement, without its
+ *  age, and leaves the rest. Other messages write nothing. */
+void saddle_wire_decode_measured(saddle_wire_message_t message,
+                                 const uint8_t data[SADDLE_WIRE_LENGTH],
+                                 saddle_measurement_t *measurement);
+
+/** One tick's output in order of identifier. Of the counter the low 4 bits count, here and below. */
+void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_health_t *health,
+                               uint8_t counter, saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES]);
+
+/** The other direction, for the node that measures and commands, and for tests.
+ *  A mode above 15 is sent as 15, which no firmware obeys. */
+void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,
+                                saddle_frame_t *frame);
+
+/** The ages are not sent: the receiver counts them. */
+void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uint8_t counter,
+                                    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES]);
+
+#endif

@@ -1,0 +1,274 @@
+#include <saddlewalk/wire.h>
+
+#include "saddle_can.h"
+#include <float.h>
+#include <math.h>
+
+#define NOT_AVAILABLE INT16_MIN
+#define COUNTER_MASK 0x0Fu
+#define COUNTER_STEP_MAX 4u
+
+/** Raw value of a number: the scale is the generated codec's, and the ends of the range follow. */
+#define RAW(signal, valid, value)                                                                \
+    ((valid) && is_finite(value)                                                                 \
+         ? saddle_can_##signal##_encode(limited(value, saddle_can_##signal##_decode(INT16_MAX))) \
+         : (int16_t)NOT_AVAILABLE)
+
+#define NUMBER(signal, raw) ((raw) == NOT_AVAILABLE ? NAN : saddle_can_##signal##_decode(raw))
+
+static bool is_finite(float value) { return value >= -FLT_MAX && value <= FLT_MAX; }
+
+static float limited(float value, float limit) {
+    return value > limit ? limit : (value < -limit ? -limit : value);
+}
+
+static uint16_t limited_u16(uint32_t value) {
+    return value > UINT16_MAX ? (uint16_t)UINT16_MAX : (uint16_t)value;
+}
+
+uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length) {
+    uint8_t crc = 0xFFu;
+    for (size_t i = 0; i < length; ++i) {
+        crc ^= bytes[i];
+        for (int bit = 0; bit < 8; ++bit) {
+            crc = (uint8_t)((crc << 1) ^ ((crc & 0x80u) != 0u ? 0x1Du : 0u));
+        }
+    }
+    return crc ^ 0xFFu;
+}
+
+static uint8_t frame_crc(uint32_t id, const uint8_t *data) {
+    uint8_t bytes[1u + SADDLE_WIRE_LENGTH] = {(uint8_t)id, (uint8_t)(id >> 8)};
+    for (size_t i = 1; i < SADDLE_WIRE_LENGTH; ++i) {
+        bytes[i + 1u] = data[i];
+    }
+    return saddle_wire_crc(bytes, sizeof bytes);
+}
+
+static void seal(saddle_frame_t *frame, uint16_t id) {
+    frame->id = id;
+    frame->data[0] = frame_crc(id, frame->data);
+}
+
+uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH]) {
+    return data[1] & COUNTER_MASK;
+}
+
+static bool follows(uint8_t counter, uint8_t before) {
+    const uint8_t step = (uint8_t)(counter - before) & COUNTER_MASK;
+    return step >= 1u && step <= COUNTER_STEP_MAX;
+}
+
+/** After an accepted frame the candidate is that frame itself, so it adds nothing to the rule. */
+static bool in_step(saddle_wire_alive_t *alive, uint8_t counter) {
+    if (alive->seen && counter == alive->last) {
+        return false;
+    }
+    const bool accepted =
+        !alive->seen || follows(counter, alive->last) || follows(counter, alive->candidate);
+    alive->candidate = counter;
+    if (accepted) {
+        alive->last = counter;
+        alive->seen = true;
+    }
+    return accepted;
+}
+
+static saddle_wire_message_t message_of(uint32_t id) {
+    switch (id) {
+    case SADDLE_CAN_COMMAND_FRAME_ID: return SADDLE_WIRE_COMMAND;
+    case SADDLE_CAN_MEASURED_COM_FRAME_ID: return SADDLE_WIRE_MEASURED_COM;
+    case SADDLE_CAN_MEASURED_LEFT_FRAME_ID: return SADDLE_WIRE_MEASURED_LEFT;
+    case SADDLE_CAN_MEASURED_RIGHT_FRAME_ID: return SADDLE_WIRE_MEASURED_RIGHT;
+    default: return SADDLE_WIRE_NONE;
+    }
+}
+
+static bool speaks_our_version(saddle_wire_message_t message, const uint8_t *data) {
+    if (message != SADDLE_WIRE_COMMAND) {
+        return true;
+    }
+    struct saddle_can_command_t command;
+    (void)saddle_can_command_unpack(&command, data, SADDLE_WIRE_LENGTH);
+    return command.wire_version == SADDLE_WIRE_VERSION;
+}
+
+saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint32_t id,
+                                         const uint8_t *data, size_t length) {
+    const saddle_wire_message_t message = message_of(id);
+    uint32_t *count = &receiver->accepted;
+    if (length != SADDLE_WIRE_LENGTH || message == SADDLE_WIRE_NONE) {
+        count = &receiver->malformed;
+    } else if (data[0] != frame_crc(id, data)) {
+        count = &receiver->bad_crc;
+    } else if (!speaks_our_version(message, data)) {
+        count = &receiver->bad_version;
+    } else if (!in_step(&receiver->alive[message], saddle_wire_counter(data))) {
+        count = &receiver->bad_counter;
+    }
+    ++*count;
+    return count == &receiver->accepted ? message : SADDLE_WIRE_NONE;
+}
+
+void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_command_t *command) {
+    struct saddle_can_command_t raw;
+    (void)saddle_can_command_unpack(&raw, data, SADDLE_WIRE_LENGTH);
+    command->mode = raw.mode;
+    command->speed_m_s = NUMBER(command_speed, raw.speed);
+    command->heel_strike_rad = NUMBER(command_heel_strike, raw.heel_strike);
+}
+
+static void decode_com(const uint8_t *data, saddle_measurement_t *measurement) {
+    struct saddle_can_measured_com_t raw;
+    (void)saddle_can_measured_com_unpack(&raw, data, SADDLE_WIRE_LENGTH);
+    measurement->com.height_m = NUMBER(measured_com_height, raw.height);
+    measurement->com.velocity_m_s.x = NUMBER(measured_com_vx, raw.vx);
+    measurement->com.velocity_m_s.y = NUMBER(measured_com_vy, raw.vy);
+}
+
+static void decode_left(const uint8_t *data, saddle_measurement_t *measurement) {
+    struct saddle_can_measured_left_t raw;
+    (void)saddle_can_measured_left_unpack(&raw, data, SADDLE_WIRE_LENGTH);
+    measurement->foot[SADDLE_LEFT].cop_m.x = NUMBER(measured_left_x, raw.x);
+    measurement->foot[SADDLE_LEFT].cop_m.y = NUMBER(measured_left_y, raw.y);
+    measurement->foot[SADDLE_LEFT].contact = raw.contact != 0u;
+}
+
+static void decode_right(const uint8_t *data, saddle_measurement_t *measurement) {
+    struct saddle_can_measured_right_t raw;
+    (void)saddle_can_measured_right_unpack(&raw, data, SADDLE_WIRE_LENGTH);
+    measurement->foot[SADDLE_RIGHT].cop_m.x = NUMBER(measured_right_x, raw.x);
+    measurement->foot[SADDLE_RIGHT].cop_m.y = NUMBER(measured_right_y, raw.y);
+    measurement->foot[SADDLE_RIGHT].contact = raw.contact != 0u;
+}
+
+void saddle_wire_decode_measured(saddle_wire_message_t message,
+                                 const uint8_t data[SADDLE_WIRE_LENGTH],
+                                 saddle_measurement_t *measurement) {
+    if (message == SADDLE_WIRE_MEASURED_COM) {
+        decode_com(data, measurement);
+    } else if (message == SADDLE_WIRE_MEASURED_LEFT) {
+        decode_left(data, measurement);
+    } else if (message == SADDLE_WIRE_MEASURED_RIGHT) {
+        decode_right(data, measurement);
+    }
+}
+
+/** Fill a message, pack it and seal the frame. The generated packers refuse only a short buffer. */
+#define ENCODE(frame, message, id, ...)                                             \
+    do {                                                                            \
+        const struct saddle_can_##message##_t raw = {__VA_ARGS__};                  \
+        (void)saddle_can_##message##_pack((frame)->data, &raw, SADDLE_WIRE_LENGTH); \
+        seal((frame), SADDLE_CAN_##id##_FRAME_ID);                                  \
+    } while (0)
+
+static void encode_com_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames) {
+    const bool valid = plan->valid;
+    ENCODE(&frames[0], plan_com, PLAN_COM, .counter = counter,
+           .x = RAW(plan_com_x, valid, plan->com_m.x),
+           .y = RAW(plan_com_y, valid, plan->com_m.y),
+           .z = RAW(plan_com_z, valid, plan->com_m.z));
+    ENCODE(&frames[1], plan_com_velocity, PLAN_COM_VELOCITY, .counter = counter,
+           .vx = RAW(plan_com_velocity_vx, valid, plan->com_velocity_m_s.x),
+           .vy = RAW(plan_com_velocity_vy, valid, plan->com_velocity_m_s.y),
+           .vz = RAW(plan_com_velocity_vz, valid, plan->com_velocity_m_s.z));
+}
+
+static void encode_feet_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames) {
+    const bool valid = plan->valid;
+    const saddle_vec3_t left_m = plan->foot_m[SADDLE_LEFT];
+    const saddle_vec3_t right_m = plan->foot_m[SADDLE_RIGHT];
+    ENCODE(&frames[0], plan_left, PLAN_LEFT, .counter = counter,
+           .x = RAW(plan_left_x, valid, left_m.x), .y = RAW(plan_left_y, valid, left_m.y),
+           .z = RAW(plan_left_z, valid, left_m.z));
+    ENCODE(&frames[1], plan_right, PLAN_RIGHT, .counter = counter,
+           .x = RAW(plan_right_x, valid, right_m.x), .y = RAW(plan_right_y, valid, right_m.y),
+           .z = RAW(plan_right_z, valid, right_m.z));
+    ENCODE(&frames[2], plan_swing, PLAN_SWING, .counter = counter,
+           .vx = RAW(plan_swing_vx, valid, plan->swing_velocity_m_s.x),
+           .vz = RAW(plan_swing_vz, valid, plan->swing_velocity_m_s.z),
+           .time_to_heel_strike =
+               RAW(plan_swing_time_to_heel_strike, valid, plan->time_to_heel_strike_s));
+}
+
+static void encode_step_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames) {
+    const bool valid = plan->valid;
+    ENCODE(&frames[0], plan_landing, PLAN_LANDING, .counter = counter,
+           .x = RAW(plan_landing_x, valid, plan->landing_m.x),
+           .y = RAW(plan_landing_y, valid, plan->landing_m.y),
+           .leg_length = RAW(plan_landing_leg_length, valid, plan->leg_length_m));
+    ENCODE(&frames[1], plan_ankle, PLAN_ANKLE, .counter = counter,
+           .toe_off = RAW(plan_ankle_toe_off, valid, plan->toe_off_rad),
+           .heel_strike = RAW(plan_ankle_heel_strike, valid, plan->heel_strike_rad),
+           .speed = RAW(plan_ankle_speed, valid, plan->speed_m_s));
+    ENCODE(&frames[2], plan_step, PLAN_STEP, .counter = counter, .valid = valid,
+           .support = plan->support, .phase = plan->phase,
+           .theta = RAW(plan_step_theta, valid, plan->theta_rad),
+           .step_length = RAW(plan_step_step_length, valid, plan->step_length_m),
+           .step_count = (uint16_t)plan->step_count);
+}
+
+static bool holds(const saddle_scores_t *scores, saddle_valid_t result) {
+    return (scores->valid & (uint32_t)result) != 0u;
+}
+
+static void encode_scores(const saddle_scores_t *scores, uint32_t faults, uint8_t counter,
+                          saddle_frame_t *frames) {
+    const bool step = holds(scores, SADDLE_VALID_STEP);
+    const bool gravity = holds(scores, SADDLE_VALID_GRAVITY);
+    ENCODE(&frames[0], scores_step, SCORES_STEP, .counter = counter,
+           .s_pend = RAW(scores_step_s_pend, step, scores->s_pend),
+           .s_jump = RAW(scores_step_s_jump, step, scores->s_jump),
+           .s_sw = RAW(scores_step_s_sw, holds(scores, SADDLE_VALID_S_SW), scores->s_sw));
+    ENCODE(&frames[1], scores_margin, SCORES_MARGIN, .counter = counter,
+           .mos_com = RAW(scores_margin_mos_com, holds(scores, SADDLE_VALID_MOS_COM),
+                          scores->mos_com_m),
+           .mos_xcom = RAW(scores_margin_mos_xcom, holds(scores, SADDLE_VALID_MOS_XCOM),
+                           scores->mos_xcom_m),
+           .v_comp = RAW(scores_margin_v_comp, holds(scores, SADDLE_VALID_V_COMP),
+                         scores->v_comp_m_s));
+    ENCODE(&frames[2], scores_force, SCORES_FORCE, .counter = counter,
+           .gravity_x = RAW(scores_force_gravity_x, gravity, scores->gravity_n.x),
+           .gravity_y = RAW(scores_force_gravity_y, gravity, scores->gravity_n.y),
+           .faults = (uint16_t)faults);
+}
+
+void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_health_t *health,
+                               uint8_t counter, saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES]) {
+    counter &= COUNTER_MASK;
+    encode_com_plan(&output->plan, counter, &frames[0]);
+    encode_feet_plan(&output->plan, counter, &frames[2]);
+    encode_step_plan(&output->plan, counter, &frames[5]);
+    encode_scores(&output->scores, output->faults, counter, &frames[8]);
+    ENCODE(&frames[11], health, HEALTH, .counter = counter, .status = (uint8_t)output->status,
+           .limits = (uint8_t)output->limits, .wire_version = SADDLE_WIRE_VERSION,
+           .late_ticks = limited_u16(health->late_ticks),
+           .rejected_frames = limited_u16(health->rejected_frames));
+}
+
+void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,
+                                saddle_frame_t *frame) {
+    ENCODE(frame, command, COMMAND, .counter = counter & COUNTER_MASK,
+           .mode = command->mode < 15u ? command->mode : 15u,
+           .speed = RAW(command_speed, true, command->speed_m_s),
+           .heel_strike = RAW(command_heel_strike, true, command->heel_strike_rad),
+           .wire_version = SADDLE_WIRE_VERSION);
+}
+
+void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uint8_t counter,
+                                    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES]) {
+    const saddle_vec2_t left_m = measurement->foot[SADDLE_LEFT].cop_m;
+    const saddle_vec2_t right_m = measurement->foot[SADDLE_RIGHT].cop_m;
+    counter &= COUNTER_MASK;
+    ENCODE(&frames[0], measured_com, MEASURED_COM, .counter = counter,
+           .height = RAW(measured_com_height, true, measurement->com.height_m),
+           .vx = RAW(measured_com_vx, true, measurement->com.velocity_m_s.x),
+           .vy = RAW(measured_com_vy, true, measurement->com.velocity_m_s.y));
+    ENCODE(&frames[1], measured_left, MEASURED_LEFT, .counter = counter,
+           .contact = measurement->foot[SADDLE_LEFT].contact,
+           .x = RAW(measured_left_x, true, left_m.x), .y = RAW(measured_left_y, true, left_m.y));
+    ENCODE(&frames[2], measured_right, MEASURED_RIGHT, .counter = counter,
+           .contact = measurement->foot[SADDLE_RIGHT].contact,
+           .x = RAW(measured_right_x, true, right_m.x),
+           .y = RAW(measured_right_y, true, right_m.y));
+}
