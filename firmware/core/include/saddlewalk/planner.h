@@ -13,6 +13,9 @@ typedef enum {
     SADDLE_COMMAND_WALK = 1
 } saddle_command_mode_t;
 
+/** The slowest walk that is planned; a slower one is limited to it. */
+#define SADDLE_SPEED_FLOOR_M_S 0.01f
+
 /** What is asked of the planner. A walk keeps the speed and angle that it started with: another
  *  value is reported as SADDLE_LIMIT_COMMAND_HELD until the walk is ended and begun again. */
 typedef struct {

@@ -10,6 +10,9 @@
 /** CoPs closer than this make saddle space undefined. */
 #define SADDLE_FEET_DISTANCE_MIN_M 1.0e-3f
 
+/** A pendulum lower than this share of its length lies on the ground: gravity along it is undefined. */
+#define SADDLE_LOWEST_PENDULUM 0.1f
+
 /** Base of support: the disc around the midpoint of the CoPs, cut at +-half_depth_m along x_S. */
 typedef struct {
     saddle_vec2_t centre_m;

@@ -56,23 +56,24 @@ typedef struct {
     float mos_com_m, mos_xcom_m; /**< margins in the instantaneous BoS, [E17] */
     saddle_vec2_t gravity_n;     /**< [E18] */
     saddle_vec2_t xcom_m;        /**< [E19] in the frame of the posture */
-    saddle_bos_t bos;            /**< in the frame of the posture */
+    saddle_bos_t bos;            /**< instantaneous, in the frame of the posture */
 } saddle_scores_t;
+
+typedef enum {
+    SADDLE_KNOWN_FEET = 1u << 0,
+    SADDLE_KNOWN_VELOCITY = 1u << 1,
+    SADDLE_KNOWN_SPEED = 1u << 2,     /**< v_comp_m_s */
+    SADDLE_KNOWN_HALF_STEP = 1u << 3,
+    SADDLE_KNOWN_ALL = (1u << 4) - 1u
+} saddle_known_t;
 
 /** A posture to score, in any frame with x forward and y left. */
 typedef struct {
     saddle_vec2_t com_m, com_velocity_m_s, cop_m[2];
     float v_comp_m_s;  /**< walking speed that the scores refer to */
     float half_step_m; /**< half the AP distance of the CoPs at the last heel strike */
-    uint32_t known;    /**< saddle_known_t bits */
+    uint32_t known;    /**< saddle_known_t bits; the numbers of the others are not read */
 } saddle_posture_t;
-
-typedef enum {
-    SADDLE_KNOWN_FEET = 1u << 0,
-    SADDLE_KNOWN_VELOCITY = 1u << 1,
-    SADDLE_KNOWN_HALF_STEP = 1u << 2,
-    SADDLE_KNOWN_ALL = (1u << 3) - 1u
-} saddle_known_t;
 
 /** Supervisor state, part of the context. */
 typedef struct {
@@ -80,8 +81,8 @@ typedef struct {
     float last_velocity_m_s;
     float v_comp_m_s, half_step_m;          /**< of the last completed step and heel strike */
     bool step_open;     /**< a heel strike was seen and the velocity was known ever since */
-    bool step_completed, heel_strike_seen;
-    bool contact[2], contact_known[2];
+    bool v_comp_known, half_step_known;
+    bool airborne[2];   /**< seen without contact at the last usable measurement of the foot */
 } saddle_supervisor_t;
 
 /** Score a posture. Whatever is not known is not scored. */

@@ -1,0 +1,72 @@
+#include <math.h>
+#include <saddlewalk/ankle_strategy.h>
+#include <saddlewalk/saddle_math.h>
+
+#define TWO_OVER_SQRT_PI 1.12837917f
+
+/* [E11] A foot turned by an angle about a pivot d_h away lengthens the leg by the chord. */
+static float elongation_m(const saddle_config_t *config, float angle_rad)
+{
+    return 2.0f * config->cop_range_m * saddle_sin(0.5f * angle_rad);
+}
+
+/* [E13] The stance leg's elongation at heel strike that gives the CoM its height there. */
+static float toe_off_elongation_m(const saddle_body_t *body, const saddle_gait_t *gait,
+                                  float lead_m)
+{
+    const float height_m = body->pendulum_m - gait->vertical_amplitude_m;
+    const float x_m = 0.5f * gait->step_length_m - lead_m;
+    const float y_m = gait->lateral_amplitude_m * saddle_sin(SADDLE_PI * lead_m / gait->step_length_m) -
+                      0.5f * gait->step_width_m;
+    return sqrtf(height_m * height_m + x_m * x_m + y_m * y_m) - body->pendulum_m;
+}
+
+saddle_transition_t saddle_transition(const saddle_config_t *config, const saddle_body_t *body,
+                                      const saddle_gait_t *gait, float heel_strike_rad)
+{
+    const float lead_m = config->cop_range_m * (1.0f - saddle_cos(heel_strike_rad));
+    const float sine =
+        toe_off_elongation_m(body, gait, lead_m) / (2.0f * config->cop_range_m);
+    const float limited = saddle_clamp(sine, 0.0f, 1.0f);
+    saddle_transition_t transition;
+    transition.heel_strike_rad = heel_strike_rad;
+    transition.toe_off_rad = 2.0f * saddle_asin(limited);
+    transition.heel_strike_lead_s = lead_m / gait->speed_m_s;
+    transition.toe_off_limited = sine < 0.0f || sine > 1.0f;
+    return transition;
+}
+
+saddle_ankle_state_t saddle_ankle(const saddle_config_t *config, const saddle_body_t *body,
+                                  const saddle_transition_t *transition, float time_s)
+{
+    saddle_ankle_state_t ankle = {0.0f, 0.0f, body->pendulum_m, 0.0f};
+    if (config->ankle == SADDLE_ANKLE_RIGID) {
+        return ankle;
+    }
+    const float u = (time_s + transition->heel_strike_lead_s) / config->ankle_time_constant_s;
+    const float progress = saddle_erf(u);
+    const float progress_rate =
+        TWO_OVER_SQRT_PI * saddle_exp(-u * u) / config->ankle_time_constant_s;
+    ankle.toe_off_rad = transition->toe_off_rad * (1.0f + progress);
+    ankle.heel_strike_rad = transition->heel_strike_rad * (1.0f - progress);
+
+    const bool toe_off_acts = time_s < 0.0f;
+    const float angle_rad = toe_off_acts ? ankle.toe_off_rad : ankle.heel_strike_rad;
+    const float angle_rate = progress_rate * (toe_off_acts ? transition->toe_off_rad
+                                                           : -transition->heel_strike_rad);
+    ankle.leg_length_m += elongation_m(config, angle_rad);
+    ankle.leg_rate_m_s = config->cop_range_m * saddle_cos(0.5f * angle_rad) * angle_rate;
+    return ankle;
+}
+
+void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m,
+                       saddle_vec2_t velocity_m_s, float *height_m, float *height_rate_m_s)
+{
+    const float horizontal_m2 = offset_m.x * offset_m.x + offset_m.y * offset_m.y;
+    const float length_m = ankle->leg_length_m;
+    const float height = sqrtf(length_m * length_m - horizontal_m2);
+    *height_m = height;
+    *height_rate_m_s = (length_m * ankle->leg_rate_m_s - offset_m.x * velocity_m_s.x -
+                        offset_m.y * velocity_m_s.y) /
+                       height;
+}

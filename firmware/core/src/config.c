@@ -1,0 +1,126 @@
+#include <saddlewalk/config.h>
+#include <saddlewalk/saddle_math.h>
+#include <saddlewalk/saddle_types.h>
+
+#define WIDTH_MIN_M 0.01f
+
+#define FIELD(name, min, max) {#name, offsetof(saddle_config_t, name), min, max}
+
+static const saddle_config_field_t FIELDS[] = {
+    FIELD(body_mass_kg, 5.0f, 300.0f),
+    FIELD(body_height_m, 0.7f, 2.5f),
+    FIELD(pendulum_ratio, 0.3f, 0.8f),
+    FIELD(cop_range_m, 0.01f, 0.3f),
+    FIELD(step_width_slow_m, WIDTH_MIN_M, 0.6f),
+    FIELD(step_width_fast_m, WIDTH_MIN_M, 0.6f),
+    FIELD(step_width_slow_speed_m_s, 0.0f, 5.0f),
+    FIELD(step_width_fast_speed_m_s, 0.0f, 5.0f),
+    FIELD(step_width_slope_s, -1.0f, 1.0f),
+    FIELD(step_width_intercept_m, -1.0f, 1.0f),
+    FIELD(half_step_slope_s, 0.001f, 1.0f),
+    FIELD(half_step_intercept_m, 0.01f, 0.5f),
+    FIELD(vertical_slope_s, -0.1f, 0.1f),
+    FIELD(vertical_intercept_m, 0.0f, 0.1f),
+    FIELD(peak_speed_m_s, 0.5f, 5.0f),
+    FIELD(ankle_time_constant_s, 0.01f, 1.0f),
+    FIELD(heel_strike_max_rad, 0.0f, 1.0f),
+    FIELD(swing_clearance_m, 0.0f, 0.3f),
+    FIELD(tick_max_s, 0.001f, 0.25f),
+    FIELD(measurement_max_age_s, 0.001f, 10.0f),
+};
+
+#define FIELD_COUNT (sizeof FIELDS / sizeof FIELDS[0])
+
+saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg)
+{
+    return (saddle_config_t){
+        .body_mass_kg = body_mass_kg,
+        .body_height_m = body_height_m,
+        .pendulum_ratio = 0.57f,
+        .cop_range_m = 0.10f,
+        .step_width_slow_m = 0.22f,
+        .step_width_fast_m = 0.10f,
+        .step_width_slow_speed_m_s = 0.6f,
+        .step_width_fast_speed_m_s = 1.1f,
+        .step_width_slope_s = -0.2128f,
+        .step_width_intercept_m = 0.3456f,
+        .half_step_slope_s = 0.1802f,
+        .half_step_intercept_m = 0.1351f,
+        .vertical_slope_s = 0.02656f,
+        .vertical_intercept_m = 0.002575f,
+        .peak_speed_m_s = 3.0f,
+        .ankle_time_constant_s = 0.11f,
+        .heel_strike_max_rad = 0.5236f,
+        .swing_clearance_m = 0.05f,
+        .tick_max_s = 0.2f,
+        .measurement_max_age_s = 0.24f,
+        .ankle = SADDLE_ANKLE_ERF,
+    };
+}
+
+const saddle_config_field_t *saddle_config_field(size_t index)
+{
+    return index < FIELD_COUNT ? &FIELDS[index] : NULL;
+}
+
+static float field_value(const saddle_config_t *config, const saddle_config_field_t *field)
+{
+    return *(const float *)(const void *)((const char *)config + field->offset);
+}
+
+static float sloped_width_m(const saddle_config_t *config, float speed_m_s)
+{
+    return config->step_width_slope_s * speed_m_s + config->step_width_intercept_m;
+}
+
+static float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static const char *check_step_width(const saddle_config_t *config)
+{
+    if (config->step_width_slow_speed_m_s > config->step_width_fast_speed_m_s) {
+        return "step_width_slow_speed_m_s";
+    }
+    if (sloped_width_m(config, config->step_width_slow_speed_m_s) < WIDTH_MIN_M ||
+        sloped_width_m(config, config->step_width_fast_speed_m_s) < WIDTH_MIN_M) {
+        return "step_width_slope_s";
+    }
+    return NULL;
+}
+
+/* The reach peak_speed / (2 w_n) must exceed the shortest half step, and the pendulum must reach
+ * from there to the CoM without lying flat. */
+static const char *check_reach(const saddle_config_t *config)
+{
+    const float pendulum_m = config->pendulum_ratio * config->body_height_m;
+    const float reach_m2 = config->peak_speed_m_s * config->peak_speed_m_s * pendulum_m /
+                           (4.0f * SADDLE_GRAVITY_M_S2);
+    const float shortest_m = 1.05f * config->half_step_intercept_m;
+    const float width_m =
+        larger(larger(config->step_width_slow_m, config->step_width_fast_m),
+               larger(sloped_width_m(config, config->step_width_slow_speed_m_s),
+                      sloped_width_m(config, config->step_width_fast_speed_m_s)));
+    if (reach_m2 < shortest_m * shortest_m) {
+        return "half_step_intercept_m";
+    }
+    if (reach_m2 + width_m * width_m > 0.8f * pendulum_m * pendulum_m) {
+        return "peak_speed_m_s";
+    }
+    return NULL;
+}
+
+const char *saddle_config_check(const saddle_config_t *config)
+{
+    for (size_t i = 0; i < FIELD_COUNT; i++) {
+        if (!saddle_in_range(field_value(config, &FIELDS[i]), FIELDS[i].min, FIELDS[i].max)) {
+            return FIELDS[i].name;
+        }
+    }
+    if ((unsigned)config->ankle >= (unsigned)SADDLE_ANKLE_COUNT) {
+        return "ankle";
+    }
+    const char *bad_width = check_step_width(config);
+    return bad_width != NULL ? bad_width : check_reach(config);
+}

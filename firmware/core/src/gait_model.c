@@ -1,0 +1,74 @@
+#include <math.h>
+#include <saddlewalk/gait_model.h>
+#include <saddlewalk/saddle_math.h>
+#include <saddlewalk/saddle_types.h>
+
+/* Below this speed A_y is the tangency value d_SW / pi, [E7]. */
+#define TANGENCY_SPEED_M_S 0.5f
+
+static float half_step_m(const saddle_config_t *config, float speed_m_s)
+{
+    return config->half_step_slope_s * speed_m_s + config->half_step_intercept_m;
+}
+
+/* Where the regression meets the reach, or the XCoM limit v / (2 w_n) if that comes first. */
+static float speed_ceiling_m_s(const saddle_config_t *config, const saddle_body_t *body)
+{
+    const float xcom_slope_s = 0.5f / body->natural_frequency_rad_s;
+    const float slope_s = config->half_step_slope_s;
+    float ceiling = config->peak_speed_m_s;
+    if (half_step_m(config, ceiling) > body->half_step_max_m) {
+        ceiling = (body->half_step_max_m - config->half_step_intercept_m) / slope_s;
+    }
+    if (half_step_m(config, ceiling) < xcom_slope_s * ceiling) {
+        ceiling = config->half_step_intercept_m / (xcom_slope_s - slope_s);
+    }
+    return ceiling;
+}
+
+saddle_body_t saddle_body(const saddle_config_t *config)
+{
+    saddle_body_t body;
+    body.pendulum_m = config->pendulum_ratio * config->body_height_m;
+    body.natural_frequency_rad_s = sqrtf(SADDLE_GRAVITY_M_S2 / body.pendulum_m);
+    body.half_step_max_m = config->peak_speed_m_s / (2.0f * body.natural_frequency_rad_s);
+    body.speed_ceiling_m_s = speed_ceiling_m_s(config, &body);
+    return body;
+}
+
+float saddle_step_width_m(const saddle_config_t *config, float speed_m_s)
+{
+    if (speed_m_s < config->step_width_slow_speed_m_s) {
+        return config->step_width_slow_m;
+    }
+    if (speed_m_s > config->step_width_fast_speed_m_s) {
+        return config->step_width_fast_m;
+    }
+    return config->step_width_slope_s * speed_m_s + config->step_width_intercept_m;
+}
+
+saddle_gait_t saddle_gait(const saddle_config_t *config, float speed_m_s)
+{
+    const float amplitude_speed =
+        speed_m_s > TANGENCY_SPEED_M_S ? speed_m_s : TANGENCY_SPEED_M_S;
+    saddle_gait_t gait;
+    gait.speed_m_s = speed_m_s;
+    gait.step_length_m = 2.0f * half_step_m(config, speed_m_s);
+    gait.step_width_m = saddle_step_width_m(config, speed_m_s);
+    gait.lateral_amplitude_m = gait.step_width_m / (2.0f * SADDLE_PI * amplitude_speed);
+    gait.vertical_amplitude_m = config->vertical_slope_s * speed_m_s + config->vertical_intercept_m;
+    gait.cadence_hz = speed_m_s / gait.step_length_m;
+    return gait;
+}
+
+saddle_step_bounds_t saddle_step_bounds(const saddle_config_t *config, const saddle_body_t *body,
+                                        float speed_m_s)
+{
+    saddle_step_bounds_t bounds;
+    bounds.min_m = speed_m_s / (2.0f * body->natural_frequency_rad_s);
+    bounds.reference_m = half_step_m(config, speed_m_s);
+    bounds.max_m = body->half_step_max_m;
+    bounds.feasible = speed_m_s > 0.0f && bounds.min_m < bounds.reference_m &&
+                      bounds.reference_m < bounds.max_m;
+    return bounds;
+}
