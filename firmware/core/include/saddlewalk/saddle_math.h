@@ -1,0 +1,61 @@
+/**
+ * Elementary functions from + - * / and sqrtf alone, single precision.
+ *
+ * Built with -ffp-contract=off, an argument gives the same bits on every compiler and target. No
+ * function returns NaN or infinity, whatever its argument. sin, asin and erf are odd and cos is even,
+ * bit for bit. A stated error is the largest over every float of the range, absolute and relative;
+ * the relative one holds for results that are not subnormal. tests/unit/test_saddle_math.c walks
+ * them all.
+ */
+#ifndef SADDLEWALK_SADDLE_MATH_H
+#define SADDLEWALK_SADDLE_MATH_H
+
+#include <stdbool.h>
+
+#define SADDLE_PI 3.14159265f
+#define SADDLE_HALF_PI 1.57079633f
+#define SADDLE_TWO_PI 6.28318531f
+
+/**
+ * Sine of an angle in [-SADDLE_TWO_PI, SADDLE_TWO_PI]; one outside counts as 0, as NaN does.
+ * Error at most 7.9e-8, relative 1.3e-7.
+ */
+float saddle_sin(float x_rad);
+
+/**
+ * Cosine of an angle in [-SADDLE_TWO_PI, SADDLE_TWO_PI]; one outside counts as 0, as NaN does.
+ * Error at most 8.7e-8, relative 1.4e-6.
+ */
+float saddle_cos(float x_rad);
+
+/**
+ * Arcsine in radians, within [-SADDLE_HALF_PI, SADDLE_HALF_PI], of x limited to [-1, 1]; NaN counts
+ * as 0. Error at most 1.5e-7, relative 2.8e-7.
+ */
+float saddle_asin(float x);
+
+/**
+ * Error function of any x, exactly -1 or 1 from |x| = 4 on; NaN counts as 0.
+ * Error at most 9.3e-8, relative 2.3e-7.
+ */
+float saddle_erf(float x);
+
+/**
+ * Exponential function of x in [-87, 88]; 0 below and for NaN, exp(88) above, exactly 1 at 0.
+ * Relative error at most 8.3e-8.
+ */
+float saddle_exp(float x);
+
+/** x limited to [lo, hi], where lo <= hi; lo for NaN. */
+float saddle_clamp(float x, float lo, float hi);
+
+/** Whether x lies in [lo, hi], ends included; false for NaN. */
+bool saddle_in_range(float x, float lo, float hi);
+
+/**
+ * Minimum-jerk profile 10 s^3 - 15 s^4 + 6 s^5 of s limited to [0, 1]; NaN counts as 0.
+ * Exactly 0, 1/2 and 1 at s = 0, 1/2 and 1. Error at most 1.4e-7.
+ */
+float saddle_min_jerk(float s);
+
+#endif
