@@ -102,7 +102,7 @@ void saddle_wire_decode_measured(saddle_wire_message_t message,
                                  const uint8_t data[SADDLE_WIRE_LENGTH],
                                  saddle_measurement_t *measurement);
 
-/** One tick's output in order of identifier. Of the counter the low 4 bits count, here and below. */
+/** One tick's output by identifier. Of the counter the low 4 bits count, here and below. */
 void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_health_t *health,
                                uint8_t counter, saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES]);
 

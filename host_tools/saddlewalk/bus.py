@@ -1,0 +1,152 @@
+"""CAN for the host tools: SocketCAN where the kernel has it, else UDP multicast on loopback.
+
+The datagrams are those of python-can's `udp_multicast`, so its tools understand them; this bus adds
+what that one lacks. It stays on the loopback interface, with hop limit 0, and so needs no route and
+no root. A node does not hear its own frames. Junk datagrams are counted, not raised.
+python-can's own programs find it as `can_logger -i saddlewalk_udp`.
+"""
+
+import ipaddress
+import select
+import socket
+import time
+from pathlib import Path
+
+import can
+from can.interfaces.udp_multicast.utils import pack_message, unpack_message
+
+from saddlewalk.errors import UserError
+
+DEFAULT_GROUP = "239.74.163.2"
+DEFAULT_PORT = 43113
+SOCKETCAN_CHANNEL = "vcan0"
+
+_LOOPBACK = "127.0.0.1"
+_DATAGRAM_MAX = 65535
+_RECEIVE_BUFFER = 1 << 20
+_IFF_UP = 1
+
+
+class LoopbackUdpBus(can.BusABC):
+    """CAN frames as UDP multicast datagrams on the loopback interface.
+
+    channel is "GROUP:PORT", or only the group. `malformed` counts datagrams that were no frame.
+    """
+
+    def __init__(self, channel: str = f"{DEFAULT_GROUP}:{DEFAULT_PORT}", **kwargs: object) -> None:
+        self._address = _address(str(channel))
+        self.malformed = 0
+        self._receiving = _receiving_socket(self._address)
+        self._sending = _sending_socket()
+        self._own_address = self._sending.getsockname()
+        self.channel_info = "UDP {}:{} on loopback".format(*self._address)
+        super().__init__(channel, **kwargs)
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        """Never blocks. Raises can.CanOperationError if the socket has no room."""
+        try:
+            self._sending.sendto(pack_message(msg), self._address)
+        except OSError as error:
+            raise can.CanOperationError(f"{self.channel_info}: {error.strerror}") from error
+
+    def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while True:
+            left = None if deadline is None else max(0.0, deadline - time.monotonic())
+            if not select.select([self._receiving], [], [], left)[0]:
+                return None, False
+            message = self._frame()
+            if message is not None:
+                return message, False
+
+    def _frame(self) -> can.Message | None:
+        datagram, source = self._receiving.recvfrom(_DATAGRAM_MAX)
+        if source == self._own_address:
+            return None
+        try:
+            return unpack_message(datagram, replace={"timestamp": time.time()}, check=True)
+        except Exception:  # msgpack and python-can raise nearly every type here
+            self.malformed += 1
+            return None
+
+    def fileno(self) -> int:
+        return self._receiving.fileno()
+
+    def shutdown(self) -> None:
+        super().shutdown()
+        self._receiving.close()
+        self._sending.close()
+
+
+def _address(channel: str) -> tuple[str, int]:
+    group, colon, port = channel.partition(":")
+    try:
+        valid = ipaddress.IPv4Address(group).is_multicast
+        number = int(port) if colon else DEFAULT_PORT
+    except ValueError:
+        valid, number = False, 0
+    if not valid or not 0 < number < 65536:
+        raise UserError(
+            f"CAN over UDP: {channel} is not GROUP:PORT, such as {DEFAULT_GROUP}:{DEFAULT_PORT}"
+        )
+    return group, number
+
+
+def _receiving_socket(address: tuple[str, int]) -> socket.socket:
+    """Bound to the group: a socket bound to any address also hears the port's other groups."""
+    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    udp.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER)
+    udp.bind(address)
+    membership = socket.inet_aton(address[0]) + socket.inet_aton(_LOOPBACK)
+    udp.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+    return udp
+
+
+def _sending_socket() -> socket.socket:
+    """Its own port tells this node's frames from all others."""
+    udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    udp.setblocking(False)
+    udp.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+    udp.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(_LOOPBACK))
+    udp.bind((_LOOPBACK, 0))
+    return udp
+
+
+def _socketcan_is_up(channel: str) -> bool:
+    try:
+        socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW).close()
+        flags = Path(f"/sys/class/net/{channel}/flags").read_text()
+    except (AttributeError, OSError):
+        return False
+    return bool(int(flags, 16) & _IFF_UP)
+
+
+def _open_socketcan(channel: str) -> can.BusABC:
+    try:
+        return can.Bus(interface="socketcan", channel=channel)
+    except (OSError, can.CanError) as error:
+        raise UserError(f"CAN interface {channel} cannot be opened ({error}): try udp") from error
+
+
+def open_bus(spec: str = "auto") -> can.BusABC:
+    """A bus that does not hear its own frames. spec is one of
+
+    `auto`: SocketCAN vcan0 if it is up, else `udp`; `socketcan:INTERFACE`; `udp`;
+    `udp:GROUP:PORT`. Raises UserError for another spec or an interface that cannot be opened.
+    """
+    kind, _, rest = spec.partition(":")
+    if spec == "auto" and _socketcan_is_up(SOCKETCAN_CHANNEL):
+        return _open_socketcan(SOCKETCAN_CHANNEL)
+    if spec in ("auto", "udp"):
+        return LoopbackUdpBus()
+    if kind == "socketcan" and rest:
+        return _open_socketcan(rest)
+    if kind == "udp" and rest:
+        return LoopbackUdpBus(rest)
+    raise UserError(f"CAN {spec} is not auto, socketcan:INTERFACE, udp or udp:GROUP:PORT")
+
+
+def describe(bus: can.BusABC) -> str:
+    """What the bus is, for people: its kind and its channel."""
+    return str(bus.channel_info)

@@ -1,0 +1,188 @@
+"""Saddlewalk's CAN messages, as `firmware/wire/saddlewalk.dbc` lays them out.
+
+The counterpart of `firmware/wire`, equal to it in every bit: numbers are scaled in single
+precision, saturate at the ends of their range, and are -32768 on the wire and NaN here when not
+available. `<saddlewalk/wire.h>` states the frame layout and the rule of the alive counter.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+import can
+import cantools
+import numpy as np
+
+from saddlewalk import paths
+
+FRAME_LENGTH = 8
+COUNTERS = 16
+COUNTER_STEP_MAX = 4
+NOT_AVAILABLE = -32768
+_RAW_MAX = 32767
+
+_database = cantools.database.load_file(paths.CHECKOUT / "firmware/wire/saddlewalk.dbc")
+WIRE_VERSION = int(_database.version)
+
+
+def _crc_of_byte(byte: int) -> int:
+    for _ in range(8):
+        byte = (byte << 1) ^ (0x11D if byte & 0x80 else 0)
+    return byte
+
+
+_CRC_TABLE = bytes(_crc_of_byte(byte) for byte in range(256))
+
+
+def crc(data: bytes) -> int:
+    """CRC-8 SAE J1850. b"123456789" gives 0x4B."""
+    value = 0xFF
+    for byte in data:
+        value = _CRC_TABLE[value ^ byte]
+    return value ^ 0xFF
+
+
+def frame_crc(identifier: int, data: bytes) -> int:
+    """Byte 0 of a frame: the CRC of its identifier, low byte first, and bytes 1 to 7."""
+    return crc(identifier.to_bytes(2, "little") + data[1:])
+
+
+class _Signal:
+    """Physical value to raw and back. Signed signals are numbers, the others counts and codes."""
+
+    def __init__(self, signal: cantools.database.can.Signal) -> None:
+        self.is_number = signal.is_signed
+        self._scale = np.float32(signal.scale)
+        self._limit = float(np.float32(_RAW_MAX) * self._scale)
+        self._code_max = (1 << signal.length) - 1
+
+    def raw(self, value: float | None) -> int:
+        if not self.is_number:
+            return min(max(int(value), 0), self._code_max)
+        if value is None or not math.isfinite(value):
+            return NOT_AVAILABLE
+        limited = np.float32(min(max(value, -self._limit), self._limit))
+        scaled = float(limited / self._scale)
+        return int(math.copysign(math.floor(abs(scaled) + 0.5), scaled))
+
+    def value(self, raw: int) -> float:
+        if not self.is_number:
+            return raw
+        return math.nan if raw == NOT_AVAILABLE else float(np.float32(raw) * self._scale)
+
+
+class _Message:
+    """One message of the database."""
+
+    def __init__(self, message: cantools.database.can.Message) -> None:
+        self.id = message.frame_id
+        self.name = message.name
+        self.signals = {signal.name: _Signal(signal) for signal in message.signals}
+        self._codec = message
+
+    def encode(self, counter: int, values: dict[str, float | None]) -> bytes:
+        known = {"CRC": 0, "COUNTER": counter, "WIRE_VERSION": WIRE_VERSION}
+        given = known | values
+        raw = {name: signal.raw(given[name]) for name, signal in self.signals.items()}
+        data = bytearray(self._codec.encode(raw, scaling=False, strict=False))
+        data[0] = frame_crc(self.id, data)
+        return bytes(data)
+
+    def decode(self, data: bytes) -> dict[str, float]:
+        raw = self._codec.decode(data, decode_choices=False, scaling=False)
+        return {name: self.signals[name].value(raw[name]) for name in raw if name != "CRC"}
+
+
+_messages = [_Message(message) for message in _database.messages]
+_by_name = {message.name: message for message in _messages}
+_by_id = {message.id: message for message in _messages}
+_OWN = {"CRC", "COUNTER", "WIRE_VERSION"}
+
+
+class Sender:
+    """Makes sealed frames. Each message name has its own alive counter, from 0."""
+
+    def __init__(self) -> None:
+        self._counters: dict[str, int] = {}
+
+    def frame(self, name: str, **values: float | None) -> can.Message:
+        """The next frame of a message, with every signal but CRC, COUNTER and WIRE_VERSION given.
+
+        Numbers in SI units and rad; None or not finite is sent as not available. Raises ValueError
+        for a name that the database does not have or a signal that is missing or too many.
+        """
+        if name not in _by_name:
+            raise ValueError(f"message {name} is not one of {', '.join(_by_name)}")
+        message = _by_name[name]
+        expected = message.signals.keys() - _OWN
+        if values.keys() != expected:
+            raise ValueError(f"{name} has {sorted(values)}: give {sorted(expected)}")
+        counter = self._counters.get(name, 0)
+        self._counters[name] = (counter + 1) % COUNTERS
+        data = message.encode(counter, values)
+        return can.Message(arbitration_id=message.id, is_extended_id=False, data=data)
+
+
+def _follows(counter: int, before: int) -> bool:
+    return 1 <= (counter - before) % COUNTERS <= COUNTER_STEP_MAX
+
+
+@dataclass
+class _Alive:
+    """Alive counter of one received message: the last accepted, and the last out of step."""
+
+    last: int
+    candidate: int
+
+    def accept(self, counter: int) -> bool:
+        if counter == self.last:
+            return False
+        accepted = _follows(counter, self.last) or _follows(counter, self.candidate)
+        self.candidate = counter
+        if accepted:
+            self.last = counter
+        return accepted
+
+
+@dataclass
+class Receiver:
+    """Judges frames by the rules of `saddle_wire_accept()`, for every message of the database."""
+
+    accepted: int = 0
+    malformed: int = 0  # not a classic 8-byte data frame, or an identifier not in the database
+    bad_crc: int = 0
+    bad_version: int = 0  # carries the wire version of another firmware
+    bad_counter: int = 0  # repeated, or out of step
+    _alive: dict[int, _Alive] = field(default_factory=dict, repr=False)
+
+    @property
+    def rejected(self) -> int:
+        return self.malformed + self.bad_crc + self.bad_version + self.bad_counter
+
+    def accept(self, frame: can.Message) -> tuple[str, dict[str, float]] | None:
+        """(message name, its signals but the CRC), or None if the frame is refused, and counted.
+
+        A number that is not available is NaN.
+        """
+        message = _by_id.get(frame.arbitration_id)
+        special = frame.is_extended_id or frame.is_remote_frame or frame.is_error_frame
+        if message is None or special or frame.is_fd or len(frame.data) != FRAME_LENGTH:
+            self.malformed += 1
+            return None
+        if frame.data[0] != frame_crc(message.id, frame.data):
+            self.bad_crc += 1
+            return None
+        values = message.decode(frame.data)
+        if values.get("WIRE_VERSION", WIRE_VERSION) != WIRE_VERSION:
+            self.bad_version += 1
+            return None
+        if not self._in_step(message.id, values["COUNTER"]):
+            self.bad_counter += 1
+            return None
+        self.accepted += 1
+        return message.name, values
+
+    def _in_step(self, identifier: int, counter: int) -> bool:
+        if identifier not in self._alive:
+            self._alive[identifier] = _Alive(counter, counter)
+            return True
+        return self._alive[identifier].accept(counter)

@@ -1,0 +1,147 @@
+/** What the cross test with Python cannot see: check values, the layout of a frame, the receiver. */
+#include <saddlewalk/wire.h>
+
+#include <math.h>
+#include <string.h>
+#include <unity.h>
+
+static saddle_wire_receiver_t receiver;
+
+void setUp(void) { memset(&receiver, 0, sizeof receiver); }
+
+void tearDown(void) {}
+
+static saddle_frame_t command_frame(uint8_t counter) {
+    const saddle_command_t command = {
+        .mode = SADDLE_COMMAND_WALK, .speed_m_s = 1.2f, .heel_strike_rad = 0.1745f};
+    saddle_frame_t frame;
+    saddle_wire_encode_command(&command, counter, &frame);
+    return frame;
+}
+
+static saddle_wire_message_t accept(const saddle_frame_t *frame) {
+    return saddle_wire_accept(&receiver, frame->id, frame->data, sizeof frame->data);
+}
+
+static void test_crc_check_value(void) {
+    TEST_ASSERT_EQUAL_HEX8(0x4B, saddle_wire_crc((const uint8_t *)"123456789", 9));
+    TEST_ASSERT_EQUAL_HEX8(0x00, saddle_wire_crc(NULL, 0));
+}
+
+/** Written out by hand from the DBC: 12000, 1745, little endian, version 1. */
+static void test_command_bytes(void) {
+    const saddle_frame_t frame = command_frame(5);
+    const uint8_t covered[9] = {0x00, 0x01, 0x15, 0xE0, 0x2E, 0xD1, 0x06, SADDLE_WIRE_VERSION, 0};
+    TEST_ASSERT_EQUAL_HEX16(0x100, frame.id);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(&covered[2], &frame.data[1], 7);
+    TEST_ASSERT_EQUAL_HEX8(saddle_wire_crc(covered, sizeof covered), frame.data[0]);
+    TEST_ASSERT_EQUAL_UINT8(5, saddle_wire_counter(frame.data));
+}
+
+static void test_every_single_bit_error_is_refused(void) {
+    for (size_t bit = 0; bit < 8u * SADDLE_WIRE_LENGTH; ++bit) {
+        saddle_frame_t frame = command_frame(0);
+        frame.data[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
+        TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE, accept(&frame));
+    }
+    TEST_ASSERT_EQUAL_UINT32(64, receiver.bad_crc);
+}
+
+static void test_frame_under_another_identifier_is_refused(void) {
+    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
+    const saddle_measurement_t measurement = {.com.height_m = 1.0f};
+    saddle_wire_encode_measurement(&measurement, 0, frames);
+    TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE,
+                          saddle_wire_accept(&receiver, frames[2].id, frames[1].data, 8));
+    TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_crc);
+}
+
+static void test_what_the_firmware_does_not_receive_is_malformed(void) {
+    const saddle_frame_t frame = command_frame(0);
+    const uint32_t identifiers[] = {0x101, 0x127, 0x140, 0x7FF, 0x80000100u, UINT32_MAX};
+    for (size_t i = 0; i < sizeof identifiers / sizeof identifiers[0]; ++i) {
+        TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE,
+                              saddle_wire_accept(&receiver, identifiers[i], frame.data, 8));
+    }
+    for (size_t length = 0; length < SADDLE_WIRE_LENGTH; ++length) {
+        TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE,
+                              saddle_wire_accept(&receiver, frame.id, NULL, length));
+    }
+    TEST_ASSERT_EQUAL_UINT32(14, receiver.malformed);
+    TEST_ASSERT_EQUAL_UINT32(0, receiver.accepted);
+}
+
+static void test_another_wire_version_is_refused(void) {
+    saddle_frame_t frame = command_frame(0);
+    uint8_t covered[9] = {(uint8_t)frame.id, (uint8_t)(frame.id >> 8)};
+    frame.data[6] = SADDLE_WIRE_VERSION + 1;
+    memcpy(&covered[2], &frame.data[1], 7);
+    frame.data[0] = saddle_wire_crc(covered, sizeof covered);
+    TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE, accept(&frame));
+    TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_version);
+}
+
+static void expect_counters(const char *counters, const char *accepted) {
+    for (size_t i = 0; counters[i] != '\0'; ++i) {
+        const char digit = counters[i];
+        const saddle_frame_t frame =
+            command_frame((uint8_t)(digit <= '9' ? digit - '0' : digit - 'a' + 10));
+        const char result = accept(&frame) == SADDLE_WIRE_COMMAND ? 'y' : 'n';
+        TEST_ASSERT_EQUAL_CHAR_MESSAGE(accepted[i], result, counters);
+    }
+}
+
+static void test_counter_rule(void) {
+    expect_counters("7", "y");       /* the first, whatever it is */
+    expect_counters("8bf3", "yyyy"); /* 1, 3, 4, and 4 over the end */
+    expect_counters("334", "nny");   /* repeats */
+    expect_counters("9", "n");       /* 5 ahead of 4 */
+    expect_counters("ab", "yy");     /* it had restarted there */
+    expect_counters("5505", "nnnn"); /* a refused frame never counts as the last accepted */
+    expect_counters("c", "y");
+}
+
+static void test_messages_count_apart(void) {
+    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
+    const saddle_measurement_t measurement = {.com.height_m = 1.0f};
+    saddle_wire_encode_measurement(&measurement, 9, frames);
+    expect_counters("0", "y");
+    TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_MEASURED_COM, accept(&frames[0]));
+    TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_MEASURED_LEFT, accept(&frames[1]));
+    TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_MEASURED_RIGHT, accept(&frames[2]));
+}
+
+static void test_decoding_leaves_ages_and_other_parts(void) {
+    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
+    const saddle_measurement_t sent = {
+        .foot = {{.cop_m = {-0.25f, 0.125f}, .contact = true}, {.cop_m = {0.5f, NAN}}}};
+    saddle_measurement_t received = {.com = {.height_m = 0.875f, .age_us = 11},
+                                     .foot = {{.age_us = 22}, {.age_us = 33, .contact = true}}};
+    saddle_wire_encode_measurement(&sent, 0, frames);
+    saddle_wire_decode_measured(SADDLE_WIRE_MEASURED_LEFT, frames[1].data, &received);
+    saddle_wire_decode_measured(SADDLE_WIRE_MEASURED_RIGHT, frames[2].data, &received);
+    saddle_wire_decode_measured(SADDLE_WIRE_NONE, frames[0].data, &received);
+    TEST_ASSERT_EQUAL_FLOAT(-0.25f, received.foot[SADDLE_LEFT].cop_m.x);
+    TEST_ASSERT_TRUE(received.foot[SADDLE_LEFT].contact);
+    TEST_ASSERT_EQUAL_FLOAT(0.5f, received.foot[SADDLE_RIGHT].cop_m.x);
+    TEST_ASSERT_TRUE(isnan(received.foot[SADDLE_RIGHT].cop_m.y));
+    TEST_ASSERT_FALSE(received.foot[SADDLE_RIGHT].contact);
+    TEST_ASSERT_EQUAL_FLOAT(0.875f, received.com.height_m);
+    TEST_ASSERT_EQUAL_UINT32(11, received.com.age_us);
+    TEST_ASSERT_EQUAL_UINT32(22, received.foot[SADDLE_LEFT].age_us);
+    TEST_ASSERT_EQUAL_UINT32(33, received.foot[SADDLE_RIGHT].age_us);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_crc_check_value);
+    RUN_TEST(test_command_bytes);
+    RUN_TEST(test_every_single_bit_error_is_refused);
+    RUN_TEST(test_frame_under_another_identifier_is_refused);
+    RUN_TEST(test_what_the_firmware_does_not_receive_is_malformed);
+    RUN_TEST(test_another_wire_version_is_refused);
+    RUN_TEST(test_counter_rule);
+    RUN_TEST(test_messages_count_apart);
+    RUN_TEST(test_decoding_leaves_ages_and_other_parts);
+    return UNITY_END();
+}
