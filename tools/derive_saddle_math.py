@@ -109,8 +109,11 @@ def literal(value: mpf) -> str:
 
 
 def largest_error(fit: Fit, coefficients: list[mpf]) -> float:
+    """Weighted, on the grid of the fit."""
     grid = chebyshev_points(fit.low, fit.high, GRID_POINTS)
-    return float(max(abs(fit.weight(t) * (evaluate(coefficients, t) - fit.target(t))) for t in grid))
+    return float(
+        max(abs(fit.weight(t) * (evaluate(coefficients, t) - fit.target(t))) for t in grid)
+    )
 
 
 def fits() -> list[Fit]:

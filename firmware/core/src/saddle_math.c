@@ -3,8 +3,9 @@
 #include <math.h>
 #include <stdint.h>
 
-/* Derived by tools/derive_saddle_math.py, 2026-11: Remez minimax fits in ascending powers, each with
- * the largest error of the fit itself. A _HI constant has so few bits that its products are exact. */
+/* Derived by tools/derive_saddle_math.py, 2026-11: Remez minimax fits in ascending powers, each
+ * with the largest error of the rounded fit. A _HI constant has few enough bits for its products
+ * with the integers of its use to be exact. */
 static const float TWO_OVER_PI = 6.36619747e-01f;
 static const float HALF_PI_HI = 1.57079601e+00f;
 static const float HALF_PI_LO = 3.13916473e-07f;
@@ -97,7 +98,7 @@ float saddle_asin(float x)
     return x < 0.0f ? -y_rad : y_rad;
 }
 
-/** exp x = scale (1 + fraction), scale a power of two: the two parts keep what their sum rounds off. */
+/** exp x = scale (1 + fraction), scale a power of two; kept apart, nothing is rounded off. */
 typedef struct {
     float scale;
     float fraction;

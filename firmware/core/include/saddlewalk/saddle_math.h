@@ -2,10 +2,10 @@
  * Elementary functions from + - * / and sqrtf alone, single precision.
  *
  * Built with -ffp-contract=off, an argument gives the same bits on every compiler and target. No
- * function returns NaN or infinity, whatever its argument. sin, asin and erf are odd and cos is even,
- * bit for bit. A stated error is the largest over every float of the range, absolute and relative;
- * the relative one holds for results that are not subnormal. tests/unit/test_saddle_math.c walks
- * them all.
+ * function of one argument returns NaN or infinity, whatever it is given. sin, asin and erf are odd
+ * and cos is even, bit for bit except for the sign of zero. A stated error is the largest over
+ * every float of the range (the relative one where the result is not subnormal), measured in
+ * 2026-11 and held by tests/unit/test_saddle_math.c, which walks them all.
  */
 #ifndef SADDLEWALK_SADDLE_MATH_H
 #define SADDLEWALK_SADDLE_MATH_H
