@@ -1,0 +1,312 @@
+"""The C codec and saddlewalk.wire agree on every bit, in both directions."""
+
+import functools
+import math
+import random
+import re
+
+import can
+import numpy as np
+import pytest
+from cffi import FFI
+from saddlewalk import paths, wire
+
+SEED = 20261122
+OUTPUTS = 1000  # of 12 frames
+INPUTS = 3000  # of 4 frames
+
+NUMBERS = {
+    "PLAN_COM": {"X": "plan.com_m.x", "Y": "plan.com_m.y", "Z": "plan.com_m.z"},
+    "PLAN_COM_VELOCITY": {
+        "VX": "plan.com_velocity_m_s.x",
+        "VY": "plan.com_velocity_m_s.y",
+        "VZ": "plan.com_velocity_m_s.z",
+    },
+    "PLAN_LEFT": {"X": "plan.foot_m.0.x", "Y": "plan.foot_m.0.y", "Z": "plan.foot_m.0.z"},
+    "PLAN_RIGHT": {"X": "plan.foot_m.1.x", "Y": "plan.foot_m.1.y", "Z": "plan.foot_m.1.z"},
+    "PLAN_SWING": {
+        "VX": "plan.swing_velocity_m_s.x",
+        "VZ": "plan.swing_velocity_m_s.z",
+        "TIME_TO_HEEL_STRIKE": "plan.time_to_heel_strike_s",
+    },
+    "PLAN_LANDING": {
+        "X": "plan.landing_m.x",
+        "Y": "plan.landing_m.y",
+        "LEG_LENGTH": "plan.leg_length_m",
+    },
+    "PLAN_ANKLE": {
+        "TOE_OFF": "plan.toe_off_rad",
+        "HEEL_STRIKE": "plan.heel_strike_rad",
+        "SPEED": "plan.speed_m_s",
+    },
+    "PLAN_STEP": {"THETA": "plan.theta_rad", "STEP_LENGTH": "plan.step_length_m"},
+    "SCORES_STEP": {"S_PEND": "scores.s_pend", "S_JUMP": "scores.s_jump", "S_SW": "scores.s_sw"},
+    "SCORES_MARGIN": {
+        "MOS_COM": "scores.mos_com_m",
+        "MOS_XCOM": "scores.mos_xcom_m",
+        "V_COMP": "scores.v_comp_m_s",
+    },
+    "SCORES_FORCE": {"GRAVITY_X": "scores.gravity_n.x", "GRAVITY_Y": "scores.gravity_n.y"},
+    "HEALTH": {},
+}
+VALID_BIT = {
+    "S_PEND": "SADDLE_VALID_STEP",
+    "S_JUMP": "SADDLE_VALID_STEP",
+    "S_SW": "SADDLE_VALID_S_SW",
+    "MOS_COM": "SADDLE_VALID_MOS_COM",
+    "MOS_XCOM": "SADDLE_VALID_MOS_XCOM",
+    "V_COMP": "SADDLE_VALID_V_COMP",
+    "GRAVITY_X": "SADDLE_VALID_GRAVITY",
+    "GRAVITY_Y": "SADDLE_VALID_GRAVITY",
+}
+MEASURED = {
+    "MEASURED_COM": {
+        "HEIGHT": "com.height_m",
+        "VX": "com.velocity_m_s.x",
+        "VY": "com.velocity_m_s.y",
+    },
+    "MEASURED_LEFT": {"X": "foot.0.cop_m.x", "Y": "foot.0.cop_m.y"},
+    "MEASURED_RIGHT": {"X": "foot.1.cop_m.x", "Y": "foot.1.cop_m.y"},
+}
+COMMAND = {"SPEED": "speed_m_s", "HEEL_STRIKE": "heel_strike_rad"}
+
+ffi = FFI()
+
+
+@pytest.fixture(scope="module")
+def codec():
+    """The C codec."""
+    ffi.cdef(paths.built("saddlewalk_wire_cdef.h").read_text())
+    return ffi.dlopen(str(paths.built("lib/libsaddlewalk_wire_shared.so")))
+
+
+def step(struct, name: str):
+    return struct[int(name)] if name.isdigit() else getattr(struct, name)
+
+
+def put(struct, path: str, value: float) -> None:
+    *parents, last = path.split(".")
+    setattr(functools.reduce(step, parents, struct), last, value)
+
+
+def get(struct, path: str) -> float:
+    return functools.reduce(step, path.split("."), struct)
+
+
+def same(a: float, b: float) -> bool:
+    return a == b or (math.isnan(a) and math.isnan(b))
+
+
+@functools.cache
+def scale_of(message: str, signal: str) -> float:
+    """Read from the DBC's text, apart from the code under test."""
+    text = (paths.CHECKOUT / "firmware/wire/saddlewalk.dbc").read_text()
+    pattern = rf"BO_ \d+ {message}:.*?SG_ {signal} : \d+\|16@1- \(([^,]+),0\)"
+    return float(re.search(pattern, text, re.DOTALL)[1])
+
+
+def any_number(rng: random.Random, scale: float) -> float:
+    """Ordinary, on and beyond the ends of the range, halfway between two steps, or no number."""
+    end = 32767 * scale
+    kinds = (
+        lambda: rng.uniform(-end, end),
+        lambda: rng.randint(-32768, 32768) * scale,
+        lambda: (rng.randint(-32768, 32767) + 0.5) * scale,
+        lambda: rng.choice((-1, 1)) * (end + rng.uniform(-2, 2) * scale),
+        lambda: rng.choice((-1, 1)) * end * 10 ** rng.uniform(0, 30),
+        lambda: rng.choice((0.0, -0.0, 1e-45, -1e-39, 3.4e38, math.inf, -math.inf, math.nan)),
+    )
+    return float(np.float32(rng.choice(kinds)()))
+
+
+def message_of(frame) -> can.Message:
+    return can.Message(arbitration_id=frame.id, is_extended_id=False, data=bytes(frame.data))
+
+
+def assert_says(said: float, value: float, scale: float) -> None:
+    """Within half a step, or the end of the range, or nothing: independent of both codecs."""
+    end = 32767 * scale
+    if not math.isfinite(value):
+        assert math.isnan(said)
+    else:
+        # 1e-6 of the number: two single-precision roundings, of the quotient and of the product.
+        nearest = min(max(value, -end), end)
+        assert abs(said - nearest) <= scale / 2 + 1e-6 * abs(nearest)
+
+
+def random_output(codec, rng: random.Random):
+    """A saddle_output_t, and what its frames must say, by the names of the DBC."""
+    output = ffi.new("saddle_output_t *")
+    output.status = rng.randrange(5)
+    output.limits, output.faults = rng.randrange(32), rng.randrange(256)
+    output.scores.valid = rng.randrange(64)
+    plan = output.plan
+    plan.valid = rng.random() < 0.8
+    plan.phase, plan.support = rng.randrange(4), rng.randrange(2)
+    plan.step_count = rng.randrange(2**32)
+    said = {}
+    for message, signals in NUMBERS.items():
+        said[message] = {}
+        for signal, field in signals.items():
+            value = any_number(rng, scale_of(message, signal))
+            put(output, field, value)
+            bit = getattr(codec, VALID_BIT[signal]) if message.startswith("SCORES") else 0
+            valid = output.scores.valid & bit if bit else plan.valid
+            said[message][signal] = value if valid else math.nan
+    said["PLAN_STEP"] |= {"VALID": plan.valid, "SUPPORT": plan.support, "PHASE": plan.phase}
+    said["PLAN_STEP"]["STEP_COUNT"] = plan.step_count % 65536
+    said["SCORES_FORCE"]["FAULTS"] = output.faults
+    said["HEALTH"] = {"STATUS": output.status, "LIMITS": output.limits}
+    return output, said
+
+
+def test_output_from_c_to_python(codec):
+    rng = random.Random(SEED)
+    frames = ffi.new("saddle_frame_t[]", len(NUMBERS))
+    health = ffi.new("saddle_wire_health_t *")
+    sender, receiver = wire.Sender(), wire.Receiver()
+    for counter in range(OUTPUTS):
+        output, said = random_output(codec, rng)
+        health.late_ticks, health.rejected_frames = rng.randrange(2**17), rng.randrange(2**32)
+        said["HEALTH"] |= {"LATE_TICKS": health.late_ticks}
+        said["HEALTH"] |= {"REJECTED_FRAMES": health.rejected_frames}
+        codec.saddle_wire_encode_output(output, health, counter % 256, frames)
+        for frame, (name, values) in zip(frames, said.items(), strict=True):
+            assert sender.frame(name, **values).data == bytes(frame.data), (name, values)
+            received_name, received = receiver.accept(message_of(frame))
+            assert (received_name, received["COUNTER"]) == (name, counter % 16)
+            for signal in NUMBERS[name]:
+                assert_says(received[signal], values[signal], scale_of(name, signal))
+    assert receiver.accepted == OUTPUTS * len(NUMBERS)
+    assert received["LATE_TICKS"] == min(health.late_ticks, 65535)
+
+
+def random_measurement(rng: random.Random):
+    measurement = ffi.new("saddle_measurement_t *")
+    said = {}
+    for message, signals in MEASURED.items():
+        said[message] = {name: any_number(rng, scale_of(message, name)) for name in signals}
+        for name, field in signals.items():
+            put(measurement, field, said[message][name])
+    for side, message in enumerate(("MEASURED_LEFT", "MEASURED_RIGHT")):
+        measurement.foot[side].contact = said[message]["CONTACT"] = rng.random() < 0.5
+    return measurement, said
+
+
+def test_measurement_both_ways(codec):
+    rng = random.Random(SEED + 1)
+    frames = ffi.new("saddle_frame_t[]", len(MEASURED))
+    decoded = ffi.new("saddle_measurement_t *")
+    sender, python = wire.Sender(), wire.Receiver()
+    c = ffi.new("saddle_wire_receiver_t *")
+    for counter in range(INPUTS):
+        measurement, said = random_measurement(rng)
+        codec.saddle_wire_encode_measurement(measurement, counter % 256, frames)
+        for frame, (name, values) in zip(frames, said.items(), strict=True):
+            sent = sender.frame(name, **values)
+            assert sent.data == bytes(frame.data), (name, values)
+            message = codec.saddle_wire_accept(c, sent.arbitration_id, bytes(sent.data), 8)
+            assert message == getattr(codec, f"SADDLE_WIRE_{name}")
+            codec.saddle_wire_decode_measured(message, bytes(sent.data), decoded)
+            _, received = python.accept(sent)
+            for signal, field in MEASURED[name].items():
+                assert same(get(decoded, field), received[signal])
+                assert_says(received[signal], values[signal], scale_of(name, signal))
+    assert c.accepted == python.accepted == INPUTS * len(MEASURED)
+
+
+def test_command_both_ways(codec):
+    rng = random.Random(SEED + 2)
+    frame = ffi.new("saddle_frame_t *")
+    command, decoded = ffi.new("saddle_command_t *"), ffi.new("saddle_command_t *")
+    sender, python = wire.Sender(), wire.Receiver()
+    c = ffi.new("saddle_wire_receiver_t *")
+    for counter in range(INPUTS):
+        values = {name: any_number(rng, scale_of("COMMAND", name)) for name in COMMAND}
+        for name, field in COMMAND.items():
+            put(command, field, values[name])
+        command.mode = rng.choice((0, 1, 2, 15, 16, 17, 255))
+        sent = sender.frame("COMMAND", MODE=command.mode, **values)
+        codec.saddle_wire_encode_command(command, counter % 256, frame)
+        assert sent.data == bytes(frame.data), values
+        assert codec.saddle_wire_accept(c, frame.id, frame.data, 8) == codec.SADDLE_WIRE_COMMAND
+        codec.saddle_wire_decode_command(frame.data, decoded)
+        assert decoded.mode == min(command.mode, 15)
+        _, received = python.accept(sent)
+        for name, field in COMMAND.items():
+            assert same(get(decoded, field), received[name])
+    assert c.accepted == INPUTS
+
+
+def test_every_raw_value_decodes_alike(codec):
+    sender = wire.Sender()
+    decoded = ffi.new("saddle_command_t *")
+    frame = sender.frame("COMMAND", MODE=1, SPEED=0.0, HEEL_STRIKE=0.0)
+    for raw in range(-32768, 32768):
+        frame.data[2:4] = raw.to_bytes(2, "little", signed=True)
+        frame.data[0] = wire.frame_crc(frame.arbitration_id, frame.data)
+        codec.saddle_wire_decode_command(bytes(frame.data), decoded)
+        _, values = wire.Receiver().accept(frame)
+        assert same(decoded.speed_m_s, values["SPEED"])
+
+
+def test_counter_rule_on_both_sides(codec):
+    """Random sequences of losses, repeats, restarts and noise are judged alike."""
+    rng = random.Random(SEED + 3)
+    frames = [wire.Sender().frame("COMMAND", MODE=1, SPEED=1.2, HEEL_STRIKE=0.1) for _ in range(16)]
+    for counter, frame in enumerate(frames):
+        frame.data[1] = frame.data[1] & 0xF0 | counter
+        frame.data[0] = wire.frame_crc(frame.arbitration_id, frame.data)
+    for _ in range(300):
+        c, python = ffi.new("saddle_wire_receiver_t *"), wire.Receiver()
+        counter = rng.randrange(16)
+        for _ in range(100):
+            counter += rng.choice((1, 1, 1, 0, 2, 4, 5, rng.randrange(16)))
+            frame = frames[counter % 16]
+            in_c = codec.saddle_wire_accept(c, frame.arbitration_id, bytes(frame.data), 8)
+            assert (in_c == codec.SADDLE_WIRE_COMMAND) == (python.accept(frame) is not None)
+        assert (c.accepted, c.bad_counter) == (python.accepted, python.bad_counter)
+        assert python.bad_counter > 0
+
+
+def test_any_bytes_are_judged_alike(codec):
+    """Random identifiers, lengths and bytes, some with the right CRC."""
+    rng = random.Random(SEED + 4)
+    c, python = ffi.new("saddle_wire_receiver_t *"), wire.Receiver()
+    for _ in range(5000):
+        identifier = rng.choice((0x100, 0x110, 0x111, 0x112, 0x000, 0x7FF))
+        data = bytearray(rng.randbytes(rng.choice((8, 8, 8, 8, 8, 8, 0, 7))))
+        if len(data) == 8 and rng.random() < 0.7:
+            data[6] = rng.choice((wire.WIRE_VERSION, data[6]))
+            data[0] = wire.frame_crc(identifier, data)
+        frame = can.Message(arbitration_id=identifier, is_extended_id=False, data=data)
+        in_c = codec.saddle_wire_accept(c, identifier, bytes(data), len(data))
+        assert (in_c != codec.SADDLE_WIRE_NONE) == (python.accept(frame) is not None)
+    for count in ("accepted", "malformed", "bad_crc", "bad_version", "bad_counter"):
+        assert getattr(c, count) == getattr(python, count) > 0
+
+
+def test_crc_check_value():
+    assert wire.crc(b"123456789") == 0x4B
+
+
+@pytest.mark.parametrize("flag", ["is_extended_id", "is_remote_frame", "is_error_frame", "is_fd"])
+def test_only_classic_data_frames_are_accepted(flag):
+    receiver = wire.Receiver()
+    frame = wire.Sender().frame("COMMAND", MODE=0, SPEED=0.0, HEEL_STRIKE=0.0)
+    setattr(frame, flag, True)
+    assert receiver.accept(frame) is None
+    assert receiver.malformed == receiver.rejected == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "named"),
+    [
+        ("COMAND", {}, "COMAND"),
+        ("MEASURED_LEFT", {"CONTACT": 1, "X": 0.0}, "'Y'"),
+        ("MEASURED_LEFT", {"CONTACT": 1, "X": 0.0, "Y": 0.0, "Z": 0.0}, "'Z'"),
+    ],
+)
+def test_sender_names_what_is_wrong(name, values, named):
+    with pytest.raises(ValueError, match=named):
+        wire.Sender().frame(name, **values)
