@@ -24,12 +24,6 @@ function(saddle_layer name)
     add_library(saddle_view_${name} INTERFACE)
     target_include_directories(saddle_view_${name} INTERFACE ${view})
 
-    foreach(source IN LISTS LAYER_SOURCES) # DEV: until every file has landed
-        if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/src/${source})
-            message(WARNING "DEV: ${source} is still to come")
-            set(LAYER_SOURCES "")
-        endif()
-    endforeach()
     if(LAYER_SOURCES)
         add_library(saddle_layer_${name} OBJECT)
         list(TRANSFORM LAYER_SOURCES PREPEND src/)

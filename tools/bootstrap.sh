@@ -10,7 +10,8 @@ fail() {
     exit 1
 }
 
-command -v "$python" >/dev/null || fail "python3 is missing: apt-get install python3 python3-venv"
+command -v "$python" >/dev/null ||
+    fail "$python is missing; as root: apt-get install -y python3 python3-venv"
 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
     fail "$("$python" --version) is too old: 3.11 or newer is needed, name one with make PYTHON=..."
 

@@ -1,0 +1,78 @@
+"""What the build makes and says: declarations for cffi, the set-up's complaints, the summary."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import cffi
+import pytest
+from saddlewalk import paths
+
+TESTS = Path(__file__).parents[1]
+BOOTSTRAP = paths.CHECKOUT / "tools" / "bootstrap.sh"
+
+PASSED = '<testcase name="a"/>'
+FAILED = '<testcase name="b"><failure/></testcase>'
+SKIPPED = '<testcase name="c"><skipped/></testcase>'
+
+
+def test_every_declared_function_is_in_the_library():
+    ffi = cffi.FFI()
+    ffi.cdef(paths.built("saddlewalk_cdef.h").read_text())
+    library = ffi.dlopen(str(paths.built("lib/libsaddlewalk.so")))
+    assert {"saddle_init", "saddle_tick", "saddle_bos_polygon"} <= set(dir(library))
+    for name in dir(library):
+        getattr(library, name)
+
+
+def test_a_missing_product_is_named_with_the_command_that_makes_it(monkeypatch, tmp_path):
+    monkeypatch.setenv("SADDLEWALK_BUILD", str(tmp_path))
+    with pytest.raises(FileNotFoundError, match=r"bin/saddlewalk-host.*make build"):
+        paths.built("bin/saddlewalk-host")
+
+
+def bootstrap(python: str, venv: Path, **environment: str) -> subprocess.CompletedProcess:
+    command = [BOOTSTRAP, python, venv]
+    return subprocess.run(command, env=os.environ | environment, capture_output=True, text=True)
+
+
+def test_what_only_the_system_has_is_asked_for_in_one_line(tmp_path):
+    result = bootstrap(sys.executable, tmp_path / "venv", CC="no-such-compiler")
+    assert result.returncode == 1
+    assert result.stderr.count("\n") == 1
+    assert "a C compiler" in result.stderr
+    assert "apt-get install -y gcc libc6-dev" in result.stderr
+    assert not (tmp_path / "venv").exists()
+
+
+def test_a_missing_python_is_named(tmp_path):
+    result = bootstrap("no-such-python", tmp_path / "venv")
+    assert (result.returncode, result.stderr.count("\n")) == (1, 1)
+    assert "no-such-python" in result.stderr
+
+
+def summary(*reports: Path, **environment: str) -> tuple[int, str]:
+    command = [sys.executable, TESTS / "summary.py", *reports]
+    result = subprocess.run(command, env=environment, capture_output=True, text=True)
+    return result.returncode, result.stdout.splitlines()[-1]
+
+
+@pytest.mark.parametrize(
+    ("cases", "environment", "expected"),
+    [
+        (PASSED, {}, (0, "1 passed, 0 failed")),
+        (PASSED + FAILED, {}, (1, "1 passed, 1 failed")),
+        (PASSED + SKIPPED, {}, (0, "1 passed, 0 failed, 1 skipped")),
+        (PASSED + SKIPPED, {"CI": "true"}, (1, "1 passed, 0 failed, 1 skipped")),
+        ("", {}, (1, "0 passed, 1 failed")),
+    ],
+)
+def test_the_summary_adds_up_and_fails_when_it_should(tmp_path, cases, environment, expected):
+    report = tmp_path / "report.xml"
+    report.write_text(f"<testsuite>{cases}</testsuite>")
+    assert summary(report, **environment) == expected
+
+
+def test_a_runner_that_left_no_report_is_a_failure(tmp_path):
+    assert summary(tmp_path / "missing.xml") == (1, "0 passed, 1 failed")
