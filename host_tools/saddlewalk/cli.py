@@ -3,13 +3,12 @@
 import argparse
 import importlib
 import os
+import pkgutil
 import sys
 from typing import NoReturn
 
-from saddlewalk import __version__
+from saddlewalk import __version__, commands
 from saddlewalk.errors import UserError
-
-COMMANDS = ("demo", "plan", "supervise", "emulate", "replay", "monitor")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -26,8 +25,8 @@ def parser() -> argparse.ArgumentParser:
     )
     root.add_argument("--version", action="version", version=f"saddlewalk {__version__}")
     subparsers = root.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for name in COMMANDS:
-        importlib.import_module(f"saddlewalk.commands.{name}").add_parser(subparsers)
+    for module in pkgutil.iter_modules(commands.__path__):
+        importlib.import_module(f"saddlewalk.commands.{module.name}").add_parser(subparsers)
     return root
 
 

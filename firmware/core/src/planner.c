@@ -3,15 +3,14 @@
 #include <saddlewalk/planner.h>
 #include <saddlewalk/saddle_math.h>
 
-/* Phase in strides with 32 fractional bits. */
-#define STRIDE_Q32 4294967296.0f
-#define QUARTER_Q32 0x40000000u
-#define STEP_BITS 31 /* a step is half a stride */
+/* Fixed-point phase: its upper 32 bits count 2^-32 strides. A step is half a stride. */
+#define Q32 4294967296.0f
 #define STEP_Q32 2147483648.0f
+#define QUARTER_Q32 0x40000000u
+#define STEP_MASK_Q32 0x7FFFFFFFu
 
 /* Where the phase lies in its step. */
 typedef struct {
-    uint32_t index;    /* steps since the start; even: left support */
     float progress;    /* [0, 1) from one saddle via point to the next */
     float angle_rad;   /* [-pi/2, pi/2), 0 at the foot via point */
     float to_saddle_s; /* until the step ends */
@@ -49,7 +48,8 @@ static void begin_walk(saddle_planner_t *planner, const saddle_config_t *config,
         limited(command->heel_strike_rad, 0.0f, config->heel_strike_max_rad,
                 SADDLE_LIMIT_HEEL_STRIKE, &limits);
 
-    planner->phase_q32 = 0;
+    planner->phase_q64 = 0;
+    planner->stride_count = 0;
     planner->origin_x_nm = 0;
     planner->gait = saddle_gait(config, speed_m_s);
     planner->transition = saddle_transition(config, body, &planner->gait, heel_strike_rad);
@@ -62,17 +62,37 @@ static void begin_walk(saddle_planner_t *planner, const saddle_config_t *config,
     planner->walking = true;
 }
 
-static uint64_t step_index(uint64_t phase_q32)
+static uint32_t phase_q32(const saddle_planner_t *planner)
 {
-    return (phase_q32 + QUARTER_Q32) >> STEP_BITS;
+    return (uint32_t)(planner->phase_q64 >> 32);
+}
+
+/* Heel strikes are at a quarter and at three quarters of the stride. */
+static uint32_t step_count(const saddle_planner_t *planner)
+{
+    const uint32_t quarter = phase_q32(planner) >> 30;
+    return 2u * planner->stride_count + (quarter + 1u) / 2u;
+}
+
+/* A share of a stride in [0, 1) with 64 fractional bits, without rounding. */
+static uint64_t to_q64(float strides)
+{
+    const float scaled = strides * Q32;
+    const uint32_t upper = (uint32_t)scaled;
+    const uint32_t lower = (uint32_t)((scaled - (float)upper) * Q32);
+    return ((uint64_t)upper << 32) | lower;
 }
 
 static void advance(saddle_planner_t *planner, float dt_s)
 {
     const float strides = saddle_clamp(0.5f * planner->gait.cadence_hz * dt_s, 0.0f, 0.5f);
-    const uint64_t before = step_index(planner->phase_q32);
-    planner->phase_q32 += (uint32_t)(strides * STRIDE_Q32);
-    if (step_index(planner->phase_q32) != before) {
+    const uint32_t steps_before = step_count(planner);
+    const uint64_t increment = to_q64(strides);
+    planner->phase_q64 += increment;
+    if (planner->phase_q64 < increment) {
+        planner->stride_count++;
+    }
+    if (step_count(planner) != steps_before) {
         const int32_t half_step_nm = (int32_t)(0.5e9f * planner->gait.step_length_m);
         planner->origin_x_nm += 2 * (int64_t)half_step_nm;
     }
@@ -80,15 +100,13 @@ static void advance(saddle_planner_t *planner, float dt_s)
 
 static step_phase_t step_phase(const saddle_planner_t *planner)
 {
-    const uint32_t in_step =
-        ((uint32_t)planner->phase_q32 + QUARTER_Q32) & (UINT32_MAX >> 1);
+    const uint32_t in_step = (phase_q32(planner) + QUARTER_Q32) & STEP_MASK_Q32;
     const int32_t from_via_point = (int32_t)in_step - (int32_t)QUARTER_Q32;
     step_phase_t step;
-    step.index = (uint32_t)step_index(planner->phase_q32);
     step.progress = (float)in_step / STEP_Q32;
     step.angle_rad = (float)from_via_point * (SADDLE_PI / STEP_Q32);
     step.to_saddle_s =
-        (float)(UINT32_MAX / 2u + 1u - in_step) / (STEP_Q32 * planner->gait.cadence_hz);
+        (float)(STEP_MASK_Q32 + 1u - in_step) / (STEP_Q32 * planner->gait.cadence_hz);
     return step;
 }
 
@@ -136,13 +154,12 @@ static void write_plan(const saddle_planner_t *planner, const saddle_config_t *c
                        const saddle_body_t *body, saddle_plan_t *plan)
 {
     const step_phase_t step = step_phase(planner);
-    const uint32_t in_stride = (uint32_t)planner->phase_q32;
     plan->valid = true;
-    plan->phase = (uint8_t)(in_stride >> 30);
-    plan->support = (uint8_t)(step.index % 2u == 0u ? SADDLE_LEFT : SADDLE_RIGHT);
-    plan->step_count = step.index;
-    plan->stride_count = (uint32_t)(planner->phase_q32 >> 32);
-    plan->theta_rad = (float)in_stride * (SADDLE_TWO_PI / STRIDE_Q32);
+    plan->phase = (uint8_t)(phase_q32(planner) >> 30);
+    plan->step_count = step_count(planner);
+    plan->support = (uint8_t)(plan->step_count % 2u == 0u ? SADDLE_LEFT : SADDLE_RIGHT);
+    plan->stride_count = planner->stride_count;
+    plan->theta_rad = (float)phase_q32(planner) * (SADDLE_TWO_PI / Q32);
     plan->origin_x_nm = planner->origin_x_nm;
     plan->speed_m_s = planner->gait.speed_m_s;
     plan->step_length_m = planner->gait.step_length_m;

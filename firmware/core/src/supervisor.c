@@ -146,6 +146,20 @@ saddle_scores_t saddle_score_posture(const saddle_config_t *config, const saddle
     return scores;
 }
 
+/* What was known and gave no score all the same. */
+static uint32_t judge_scores(uint32_t known, const saddle_scores_t *scores)
+{
+    const uint32_t for_steps = (uint32_t)SADDLE_KNOWN_SPEED | (uint32_t)SADDLE_KNOWN_HALF_STEP;
+    uint32_t faults = 0;
+    if ((known & SADDLE_KNOWN_FEET) != 0u && !scores->bos.defined) {
+        faults |= (uint32_t)SADDLE_FAULT_FEET_TOGETHER;
+    }
+    if ((known & for_steps) == for_steps && (scores->valid & SADDLE_VALID_STEP) == 0u) {
+        faults |= (uint32_t)SADDLE_FAULT_SPEED_INFEASIBLE;
+    }
+    return faults;
+}
+
 uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_config_t *config,
                                   const saddle_body_t *body,
                                   const saddle_measurement_t *measurement, float dt_s,
@@ -177,7 +191,5 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
                  (supervisor->half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u),
     };
     *scores = saddle_score_posture(config, body, &posture);
-    const bool feet_together = feet_known && !scores->bos.defined;
-    return com_fault | left_fault | right_fault |
-           (feet_together ? (uint32_t)SADDLE_FAULT_FEET_TOGETHER : 0u);
+    return com_fault | left_fault | right_fault | judge_scores(posture.known, scores);
 }

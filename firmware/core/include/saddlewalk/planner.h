@@ -55,7 +55,8 @@ typedef struct {
 
 /** Planner state, about 80 bytes, part of the context. */
 typedef struct {
-    uint64_t phase_q32; /**< strides since the start, 32 fractional bits: exact however long */
+    uint64_t phase_q64;    /**< gait phase, 2^-64 strides: wraps and never drifts */
+    uint32_t stride_count; /**< its wraps */
     int64_t origin_x_nm;
     saddle_gait_t gait;
     saddle_transition_t transition;

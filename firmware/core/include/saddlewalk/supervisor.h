@@ -25,7 +25,7 @@ typedef struct {
     } foot[2];
 } saddle_measurement_t;
 
-/** Why an input was not used. */
+/** Why an input was not used or gave no score. */
 typedef enum {
     SADDLE_FAULT_COMMAND = 1u << 0, /**< unknown mode or number not finite: the last good one holds */
     SADDLE_FAULT_COM_STALE = 1u << 1,
@@ -34,7 +34,8 @@ typedef enum {
     SADDLE_FAULT_LEFT_RANGE = 1u << 4,
     SADDLE_FAULT_RIGHT_STALE = 1u << 5,
     SADDLE_FAULT_RIGHT_RANGE = 1u << 6,
-    SADDLE_FAULT_FEET_TOGETHER = 1u << 7 /**< CoPs within 1 mm: no saddle space */
+    SADDLE_FAULT_FEET_TOGETHER = 1u << 7,   /**< CoPs within 1 mm: no saddle space */
+    SADDLE_FAULT_SPEED_INFEASIBLE = 1u << 8 /**< v_CoMp cannot be walked: no step scores */
 } saddle_fault_t;
 
 /** Which fields of saddle_scores_t hold a result; the others are 0. */

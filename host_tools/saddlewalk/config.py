@@ -1,0 +1,90 @@
+"""From command-line options and a TOML file to the core's configuration."""
+
+import argparse
+import difflib
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from saddlewalk.errors import UserError
+
+DEFAULT_HEIGHT_M = 1.79
+DEFAULT_MASS_KG = 63.3
+ANKLES = {"erf": 0, "rigid": 1}
+
+
+def add_body_options(parser: argparse.ArgumentParser) -> None:
+    """--height, --mass, --config: what every command that runs the core takes."""
+    parser.add_argument("--height", type=float, metavar="M", help="body height, m (default 1.79)")
+    parser.add_argument("--mass", type=float, metavar="KG", help="body mass, kg (default 63.3)")
+    parser.add_argument(
+        "--config", type=Path, metavar="FILE", help="TOML file with fields of saddle_config_t"
+    )
+
+
+def load_config(args: argparse.Namespace, ankle: str | None = None) -> Any:
+    """A saddle_config_t: the paper's defaults, then the file, then the options.
+
+    Raises UserError naming the option, file, field and value that is wrong.
+    """
+    from saddlewalk.core import describe_bad_field, ffi, library
+
+    fields = _read_file(args.config) if args.config else {}
+    if args.height is not None:
+        fields["body_height_m"] = args.height
+    if args.mass is not None:
+        fields["body_mass_kg"] = args.mass
+    if ankle is not None:
+        fields["ankle"] = ANKLES[ankle]
+    config = ffi().new("saddle_config_t *")
+    config[0] = library().saddle_config_default(DEFAULT_HEIGHT_M, DEFAULT_MASS_KG)
+    for name, value in fields.items():
+        setattr(config, name, value)
+    bad_field = library().saddle_config_check(config)
+    if bad_field != ffi().NULL:
+        name = ffi().string(bad_field).decode()
+        raise UserError(f"{_origin(name, args)}{describe_bad_field(name, config)}")
+    return config
+
+
+def host_arguments(config: Any) -> list[str]:
+    """Options that give saddlewalk-host the same configuration, to the bit."""
+    from saddlewalk.core import field_ranges
+
+    arguments = [f"--set={name}={getattr(config, name):.9g}" for name in field_ranges()]
+    ankle = next(name for name, number in ANKLES.items() if number == config.ankle)
+    return [*arguments, f"--ankle={ankle}"]
+
+
+def _origin(field: str, args: argparse.Namespace) -> str:
+    option = {"body_height_m": "height", "body_mass_kg": "mass"}.get(field)
+    if option is not None and getattr(args, option) is not None:
+        return f"--{option}: "
+    return f"{args.config}: " if args.config else ""
+
+
+def _read_file(path: Path) -> dict[str, float | int]:
+    try:
+        fields = tomllib.loads(path.read_text())
+    except OSError as error:
+        raise UserError(f"--config {path}: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UserError(f"{path}: not TOML: {error}") from error
+    return {name: _field_value(path, name, value) for name, value in fields.items()}
+
+
+def _field_value(path: Path, name: str, value: Any) -> float | int:
+    from saddlewalk.core import field_ranges
+
+    if name == "ankle":
+        if value not in ANKLES:
+            raise UserError(f"{path}: ankle = {value!r} must be one of {', '.join(ANKLES)}")
+        return ANKLES[value]
+    known = field_ranges()
+    if name not in known:
+        near = difflib.get_close_matches(name, [*known, "ankle"], n=1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise UserError(f"{path}: {name} is not a field of saddle_config_t{hint}")
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise UserError(f"{path}: {name} = {value!r} must be a number")
+    return float(value)

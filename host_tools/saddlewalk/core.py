@@ -1,0 +1,113 @@
+"""The C core in this process: the library that firmware links, called through its own headers."""
+
+import functools
+from dataclasses import dataclass
+from typing import Any
+
+import cffi
+
+from saddlewalk.errors import UserError
+from saddlewalk.paths import built
+
+AGE_NEVER_US = 0xFFFFFFFF
+
+
+@functools.cache
+def ffi() -> cffi.FFI:
+    """The declarations of the core's public headers, as the build preprocessed them."""
+    declarations = cffi.FFI()
+    declarations.cdef(built("saddlewalk_cdef.h").read_text())
+    return declarations
+
+
+@functools.cache
+def library() -> Any:
+    return ffi().dlopen(str(built("lib/libsaddlewalk.so")))
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One instant of a wearer. CoPs are relative to the CoM, metres; None is not measured."""
+
+    com_height_m: float | None = None
+    com_velocity_m_s: tuple[float, float] | None = None
+    left_cop_m: tuple[float, float] | None = None
+    right_cop_m: tuple[float, float] | None = None
+    left_contact: bool = False
+    right_contact: bool = False
+
+
+@dataclass(frozen=True)
+class Command:
+    """speed_m_s None: stand."""
+
+    speed_m_s: float | None = None
+    heel_strike_rad: float = 0.0
+
+
+class Core:
+    """One context of the core. `config` is a saddle_config_t (see saddlewalk.config)."""
+
+    def __init__(self, config: Any) -> None:
+        self._context = ffi().new("saddle_context_t *")
+        self._input = ffi().new("saddle_input_t *")
+        bad_field = library().saddle_config_check(config)
+        if bad_field != ffi().NULL:
+            raise UserError(describe_bad_field(ffi().string(bad_field).decode(), config))
+        library().saddle_init(self._context, config)
+
+    def tick(self, time_us: int, command: Command, measurement: Measurement) -> Any:
+        """One saddle_tick(): a saddle_output_t of its own. Raises ValueError on a refused call."""
+        output = ffi().new("saddle_output_t *")
+        self._input.time_us = time_us
+        walk = command.speed_m_s is not None
+        self._input.command.mode = (
+            library().SADDLE_COMMAND_WALK if walk else library().SADDLE_COMMAND_STAND
+        )
+        self._input.command.speed_m_s = command.speed_m_s if walk else 0.0
+        self._input.command.heel_strike_rad = command.heel_strike_rad
+        _fill(self._input.measurement, measurement)
+        status = library().saddle_tick(self._context, self._input, output)
+        if status != library().SADDLE_OK:
+            raise ValueError(f"saddle_tick at {time_us} us: status {status}")
+        return output
+
+
+def _fill(target: Any, measurement: Measurement) -> None:
+    com = target.com
+    known = measurement.com_height_m is not None and measurement.com_velocity_m_s is not None
+    com.age_us = 0 if known else AGE_NEVER_US
+    if known:
+        com.height_m = measurement.com_height_m
+        com.velocity_m_s.x, com.velocity_m_s.y = measurement.com_velocity_m_s
+    feet = (
+        (measurement.left_cop_m, measurement.left_contact),
+        (measurement.right_cop_m, measurement.right_contact),
+    )
+    for foot, (cop_m, contact) in zip(target.foot, feet, strict=True):
+        foot.age_us = 0 if cop_m is not None else AGE_NEVER_US
+        foot.contact = contact
+        if cop_m is not None:
+            foot.cop_m.x, foot.cop_m.y = cop_m
+
+
+def field_ranges() -> dict[str, tuple[float, float]]:
+    """Accepted range of every float field of saddle_config_t."""
+    ranges = {}
+    index = 0
+    while (field := library().saddle_config_field(index)) != ffi().NULL:
+        ranges[ffi().string(field.name).decode()] = (field.min, field.max)
+        index += 1
+    return ranges
+
+
+def describe_bad_field(name: str, config: Any) -> str:
+    """One line for a field that saddle_config_check() named."""
+    value = getattr(config, name)
+    ranges = field_ranges()
+    if name not in ranges:
+        return f"{name} = {value} is not one of the core's models"
+    low, high = ranges[name]
+    if low <= value <= high:
+        return f"{name} = {value:g} does not fit the other fields of the configuration"
+    return f"{name} = {value:g} must be in {low:g} to {high:g}"

@@ -1,0 +1,203 @@
+"""`saddlewalk supervise`: scores of recorded states against independent formulas, and bad input."""
+
+import csv
+import io
+import itertools
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from saddlewalk.cli import main
+from saddlewalk.commands.supervise import SCORE_COLUMNS, STATE_COLUMNS
+from twin import Twin, bos_margin
+
+TOLERANCE = 2e-5
+DT_S = 0.08
+
+
+def steady_walk(twin: Twin, steps: int) -> list[dict[str, float]]:
+    """The planned walk as if measured; a foot is on the ground while it is the stance foot."""
+    rows = []
+    for k in range(int(steps * twin.step_time / DT_S)):
+        t = k * DT_S
+        com, velocity, feet = twin.com_xy(t), twin.com_xy_velocity(t), twin.feet(t)
+        numbers = [t, *com, twin.com_z(t), *velocity, *feet["left"], *feet["right"]]
+        contacts = [twin.support(t) == "left", twin.support(t) == "right"]
+        rows.append(
+            dict(zip(STATE_COLUMNS, [*map(float, numbers), *map(int, contacts)], strict=True))
+        )
+    return rows
+
+
+def write(path, rows) -> str:
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, STATE_COLUMNS)
+        writer.writeheader()
+        writer.writerows(rows)
+    return str(path)
+
+
+def supervise(capsys, *options: str) -> list[dict[str, str]]:
+    assert main(["supervise", *options]) == 0
+    return list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+
+
+def heel_strikes(rows) -> list[int]:
+    return [
+        k
+        for k in range(1, len(rows))
+        for side in ("left_contact", "right_contact")
+        if rows[k][side] > rows[k - 1][side]
+    ]
+
+
+@pytest.mark.parametrize("speed", [0.5, 0.9, 1.2, 1.6])
+def test_scores_equal_their_formulas(speed, capsys, tmp_path):
+    twin = Twin(speed, math.radians(10))
+    states = steady_walk(twin, 6)
+    scores = supervise(capsys, "--in", write(tmp_path / "states.csv", states))
+    strikes = heel_strikes(states)
+    d_min, d = speed / (2 * twin.frequency), twin.step / 2
+    d_max = 3.0 / (2 * twin.frequency)
+    assert list(scores[0]) == SCORE_COLUMNS
+    for k in range(strikes[1], len(states)):
+        state, row = states[k], {name: value for name, value in scores[k].items()}
+        last = max(strike for strike in strikes if strike <= k)
+        half = abs(states[last]["left_x_m"] - states[last]["right_x_m"]) / 2
+        com, xcom = twin.com_xy(state["t_s"]), twin.xcom(state["t_s"])
+        feet = twin.feet(state["t_s"])
+        expected = {
+            "t_s": state["t_s"],
+            "v_comp_m_s": speed,
+            "s_pend": (half - d_min) / (d - d_min),
+            "s_jump": (half - d_max) / (d - d_max),
+            "s_sw": twin.s_sw(state["t_s"]),
+            "mos_com_m": bos_margin(feet["left"], feet["right"], 0.1, com),
+            "mos_xcom_m": bos_margin(feet["left"], feet["right"], 0.1, xcom),
+        }
+        for column, value in expected.items():
+            # s_pend divides by a few centimetres: the same rounding weighs more.
+            tolerance = 1e-4 if column.startswith("s_") else TOLERANCE
+            assert float(row[column]) == pytest.approx(value, abs=tolerance), (column, k)
+        assert row["flags"] == "0x00000000"
+
+
+def test_v_comp_is_the_mean_speed_of_the_last_step(capsys, tmp_path):
+    states = steady_walk(Twin(1.0, 0.0), 6)
+    for state in states:
+        state["com_vx_m_s"] = 1.0 + 0.3 * math.sin(7.0 * state["t_s"])
+    strikes = heel_strikes(states)
+    scores = supervise(capsys, "--in", write(tmp_path / "states.csv", states))
+    for first, last in itertools.pairwise(strikes):
+        speeds = [state["com_vx_m_s"] for state in states[first : last + 1]]
+        mean = np.trapezoid(speeds) / (last - first)
+        assert float(scores[last]["v_comp_m_s"]) == pytest.approx(mean, abs=1e-6)
+        before = scores[last - 1]["v_comp_m_s"]
+        assert before == "" or float(before) != pytest.approx(mean, abs=1e-6)
+
+
+def test_speed_stands_in_until_a_step_is_complete(capsys, tmp_path):
+    path = write(tmp_path / "states.csv", steady_walk(Twin(1.2, 0.0), 4))
+    without = supervise(capsys, "--in", path)
+    assert without[0]["v_comp_m_s"] == "" and without[0]["s_sw"] == ""
+    assert float(supervise(capsys, "--in", path, "--speed", "1.1")[0]["v_comp_m_s"]) == (
+        pytest.approx(1.1)
+    )
+
+
+def test_infeasible_speed_gives_zero_and_a_flag(capsys, tmp_path):
+    states = steady_walk(Twin(1.2, 0.0), 4)
+    for state in states:
+        state["com_vx_m_s"] = 2.4
+    last = supervise(capsys, "--in", write(tmp_path / "states.csv", states))[-1]
+    assert float(last["v_comp_m_s"]) == pytest.approx(2.4)
+    assert (last["s_pend"], last["s_jump"]) == ("0.0", "0.0")
+    assert int(last["flags"], 16) & 0x100
+
+
+# Fault bits of saddle_fault_t and the columns that must stay empty.
+MISSING = [
+    ("com_vx_m_s", "", 0x02, ["mos_xcom_m"]),
+    ("com_vy_m_s", "nan", 0x02, ["mos_xcom_m"]),
+    ("com_z_m", "inf", 0x02, ["mos_xcom_m"]),
+    ("left_x_m", "", 0x08, ["s_sw", "mos_com_m", "mos_xcom_m"]),
+    ("left_contact", "", 0x08, ["s_sw", "mos_com_m", "mos_xcom_m"]),
+    ("right_y_m", "-inf", 0x20, ["s_sw", "mos_com_m", "mos_xcom_m"]),
+    ("com_x_m", "", 0x28, ["s_sw", "mos_com_m", "mos_xcom_m"]),
+]
+ABSURD = [
+    ("com_z_m", 0.0, 0x04, ["mos_xcom_m"]),
+    ("com_vx_m_s", 1e30, 0x04, ["mos_xcom_m"]),
+    ("left_y_m", 4e3, 0x10, ["s_sw", "mos_com_m", "mos_xcom_m"]),
+    ("right_x_m", -1e38, 0x40, ["s_sw", "mos_com_m", "mos_xcom_m"]),
+    ("com_y_m", 1e308, 0x50, ["s_sw", "mos_com_m", "mos_xcom_m"]),
+]
+
+
+@pytest.mark.parametrize(("column", "value", "fault", "empty"), MISSING + ABSURD)
+def test_missing_or_absurd_measurement_is_flagged_and_gives_no_number(
+    column, value, fault, empty, capsys, tmp_path
+):
+    states = steady_walk(Twin(1.2, 0.0), 5)
+    states[-2][column] = value
+    scores = supervise(capsys, "--in", write(tmp_path / "states.csv", states))
+    assert len(scores) == len(states)
+    assert int(scores[-2]["flags"], 16) & 0xFFFF == fault
+    assert all(scores[-2][name] == "" for name in empty)
+    assert scores[-1]["flags"] == "0x00000000"
+    assert all(math.isfinite(float(value)) for value in scores[-1].values() if "x" not in value)
+
+
+def test_feet_together_is_flagged_not_divided_by(capsys, tmp_path):
+    states = steady_walk(Twin(1.2, 0.0), 5)
+    states[-1]["right_x_m"], states[-1]["right_y_m"] = (
+        states[-1]["left_x_m"] + 5e-4,
+        states[-1]["left_y_m"],
+    )
+    last = supervise(capsys, "--in", write(tmp_path / "states.csv", states))[-1]
+    assert int(last["flags"], 16) & 0xFFFF == 0x80
+    assert last["mos_com_m"] == "" and last["s_sw"] != ""
+
+
+def test_standard_input_and_output(capsys, monkeypatch, tmp_path):
+    path = write(tmp_path / "states.csv", steady_walk(Twin(1.2, 0.0), 5))
+    from_file = supervise(capsys, "--in", path)
+    with Path(path).open() as file:
+        monkeypatch.setattr("sys.stdin", file)
+        assert supervise(capsys, "--in", "-", "--out", "-") == from_file
+
+
+def bad_files():
+    rows = [",".join(STATE_COLUMNS), "0,0,0,1,1,0,0,0.1,0,-0.1,1,0"]
+    yield [rows[0].replace("com_vx_m_s", "speed"), rows[1]], "com_vx_m_s"
+    yield [rows[0], rows[1].replace("0.1", "wide")], "line 2, left_y_m: 'wide'"
+    yield [rows[0], rows[1][:-1] + "2"], "line 2, right_contact: 2"
+    yield [*rows, rows[1]], "line 3, t_s"
+    yield [*rows, "," + rows[1][2:]], "line 3, t_s"
+    yield [rows[0], "inf" + rows[1][1:]], "line 2, t_s"
+    yield [""], "no column t_s"
+
+
+@pytest.mark.parametrize(("lines", "named"), list(bad_files()))
+def test_bad_file_is_one_line_and_leaves_nothing_behind(lines, named, capsys, tmp_path):
+    source, out = tmp_path / "states.csv", tmp_path / "scores.csv"
+    source.write_text("\n".join(lines) + "\n")
+    assert main(["supervise", "--in", str(source), "--out", str(out)]) == 2
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1 and named in message and str(source) in message
+    assert list(tmp_path.iterdir()) == [source]
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe\x00\x00", b"\x00" * 64])
+def test_binary_file_is_refused_in_one_line(content, capsys, tmp_path):
+    source = tmp_path / "states.csv"
+    source.write_bytes(content)
+    assert main(["supervise", "--in", str(source)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_missing_file_is_named(capsys, tmp_path):
+    assert main(["supervise", "--in", str(tmp_path / "none.csv")]) == 2
+    assert "none.csv" in capsys.readouterr().err
