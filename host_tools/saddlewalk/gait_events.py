@@ -6,6 +6,7 @@ placements, where a foot lies flat: at heel strike and toe-off itself the midpoi
 is up to a tenth of a step away from where the foot stands.
 """
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,7 +112,7 @@ def placements(recording: Recording) -> list[Placement]:
 
 def steps(placed: list[Placement]) -> tuple[np.ndarray, np.ndarray]:
     """Length and width of each step: of successive placements of opposite feet."""
-    pairs = [(a, b) for a, b in zip(placed, placed[1:], strict=False) if a.side != b.side]
+    pairs = [(a, b) for a, b in itertools.pairwise(placed) if a.side != b.side]
     lengths_m = [b.cop_m[0] - a.cop_m[0] for a, b in pairs]
     widths_m = [(a.cop_m[1] - b.cop_m[1]) * (1 if a.side == 0 else -1) for a, b in pairs]
     return np.array(lengths_m), np.array(widths_m)
