@@ -2,13 +2,9 @@
 include_guard(GLOBAL)
 
 add_library(saddle_strict INTERFACE)
-target_compile_features(saddle_strict INTERFACE c_std_99)
 target_compile_options(saddle_strict INTERFACE
-    -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow
+    -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow
     -Wstrict-prototypes -Wmissing-prototypes -Werror)
-set(CMAKE_C_STANDARD 99)
-set(CMAKE_C_STANDARD_REQUIRED ON)
-set(CMAKE_C_EXTENSIONS OFF)
 
 # saddle_same_bits: what makes one input give the same bits on every compiler and target.
 add_library(saddle_same_bits INTERFACE)

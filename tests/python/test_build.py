@@ -7,6 +7,7 @@ from pathlib import Path
 
 import cffi
 import pytest
+
 from saddlewalk import paths
 
 TESTS = Path(__file__).parents[1]
