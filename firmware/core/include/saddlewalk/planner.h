@@ -41,7 +41,7 @@ typedef struct {
     uint8_t support;        /**< saddle_side_t */
     uint32_t step_count;    /**< heel strikes since the start */
     uint32_t stride_count;  /**< whole turns of theta since the start */
-    float theta_rad;        /**< gait phase within the stride, [0, 2 pi) */
+    float theta_rad;        /**< gait phase within the stride, [0, 2 pi), [E8] */
     int64_t origin_x_nm;    /**< walked distance to the stance foot; integer, so it never drifts */
     float speed_m_s, step_length_m, step_width_m;
     saddle_vec3_t com_m, com_velocity_m_s;
