@@ -111,8 +111,11 @@ def placements(recording: Recording) -> list[Placement]:
 
 
 def steps(placed: list[Placement]) -> tuple[np.ndarray, np.ndarray]:
-    """Length and width of each step: of successive placements of opposite feet."""
-    pairs = [(a, b) for a, b in itertools.pairwise(placed) if a.side != b.side]
+    """Length and width of each step: of successive placements of opposite feet.
+
+    A foot that lies there when the trial begins was not seen to step.
+    """
+    pairs = [(a, b) for a, b in itertools.pairwise(placed) if a.side != b.side and b.first > 0]
     lengths_m = [b.cop_m[0] - a.cop_m[0] for a, b in pairs]
     widths_m = [(a.cop_m[1] - b.cop_m[1]) * (1 if a.side == 0 else -1) for a, b in pairs]
     return np.array(lengths_m), np.array(widths_m)

@@ -1,0 +1,129 @@
+"""`saddlewalk monitor`: what the firmware publishes on LCM, live in the terminal."""
+
+import argparse
+import sys
+import time
+from dataclasses import dataclass, field
+from typing import Any, NoReturn
+
+REFRESH_S = 0.2
+LINE_S = 1.0
+ONCE_S = 2.0
+CHANNELS = {
+    "SADDLEWALK_PLAN": "plan_t",
+    "SADDLEWALK_SCORES": "scores_t",
+    "SADDLEWALK_HEALTH": "health_t",
+}
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser("monitor", help="show what the firmware publishes, live")
+    parser.add_argument("--lcm", metavar="URL", help="default: udpm on this machine")
+    parser.add_argument(
+        "--once",
+        action="store_true",
+        help=f"print one line and end; status 1 if not all has come within {ONCE_S:g} s",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    from saddlewalk.lcmbus import open_lcm
+
+    bus = open_lcm(args.lcm)
+    listener = Listener()
+    listener.subscribe(bus)
+    try:
+        if args.once:
+            return _once(bus, listener)
+        _watch(bus, listener)
+    except KeyboardInterrupt:
+        return 0
+
+
+@dataclass
+class Listener:
+    """The newest message of each channel, when any came, and how many could not be read."""
+
+    latest: dict[str, Any] = field(default_factory=dict)
+    heard_s: float = field(default_factory=time.monotonic)
+    malformed: int = 0
+
+    def subscribe(self, bus: Any) -> None:
+        for channel in CHANNELS:
+            bus.subscribe(channel, self.take)
+
+    def take(self, channel: str, data: bytes) -> None:
+        """A message that cannot be decoded is counted and changes nothing else."""
+        from saddlewalk import lcm_types
+
+        try:
+            message = getattr(lcm_types, CHANNELS[channel]).decode(data)
+        except Exception:  # the generated decoders raise ValueError, struct.error or IndexError
+            self.malformed += 1
+            return
+        self.latest[channel] = message
+        self.heard_s = time.monotonic()
+
+    @property
+    def complete(self) -> bool:
+        return self.latest.keys() == CHANNELS.keys()
+
+    def line(self) -> str:
+        """One plain line of what was heard."""
+        from saddlewalk.dashboard import summary
+
+        return summary(*self._view()) + (f" | {self._note()}" if self.malformed else "")
+
+    def panel(self) -> Any:
+        """The same for a terminal."""
+        from rich.console import Group
+
+        from saddlewalk.dashboard import render
+
+        panel = render(*self._view())
+        return Group(panel, self._note()) if self.malformed else panel
+
+    def _view(self) -> tuple[Any, Any, Any, float]:
+        plan, scores, health = (self.latest.get(channel) for channel in CHANNELS)
+        return plan, scores, health, time.monotonic() - self.heard_s
+
+    def _note(self) -> str:
+        return f"{self.malformed} LCM messages could not be read"
+
+
+def _once(bus: Any, listener: Listener) -> int:
+    deadline_s = time.monotonic() + ONCE_S
+    while not listener.complete and (left_s := deadline_s - time.monotonic()) > 0:
+        bus.handle_timeout(max(1, round(left_s * 1000)))
+    print(listener.line())
+    return 0 if listener.complete else 1
+
+
+def _watch(bus: Any, listener: Listener) -> NoReturn:
+    """Until Ctrl-C: a live panel on a terminal, else one line a second."""
+    if sys.stdout.isatty():
+        _watch_panel(bus, listener)
+    else:
+        _watch_lines(bus, listener)
+
+
+def _watch_panel(bus: Any, listener: Listener) -> NoReturn:
+    from rich.live import Live
+
+    with Live(listener.panel(), auto_refresh=False) as live:
+        while True:
+            _listen(bus, REFRESH_S)
+            live.update(listener.panel(), refresh=True)
+
+
+def _watch_lines(bus: Any, listener: Listener) -> NoReturn:
+    while True:
+        _listen(bus, LINE_S)
+        print(listener.line(), flush=True)
+
+
+def _listen(bus: Any, for_s: float) -> None:
+    deadline_s = time.monotonic() + for_s
+    while (left_s := deadline_s - time.monotonic()) > 0:
+        bus.handle_timeout(max(1, round(left_s * 1000)))

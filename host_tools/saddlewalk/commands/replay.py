@@ -1,0 +1,117 @@
+"""`saddlewalk replay`: a recorded walk, sent through CAN to the firmware as a live wearer would."""
+
+import argparse
+import math
+import sys
+from typing import TYPE_CHECKING, Any
+
+from saddlewalk.config import add_body_options
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from saddlewalk.gait_events import Gait
+    from saddlewalk.recording import Recording
+
+SAMPLE_NAMES = ("healthy", "stroke")
+SCORE_COLUMNS = "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m faults".split()
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser(
+        "replay", help="send a recorded walk through CAN to the firmware"
+    )
+    trial = parser.add_mutually_exclusive_group(required=True)
+    trial.add_argument("trial", nargs="?", metavar="TRIAL.csv", help="- reads standard input")
+    trial.add_argument("--sample", choices=SAMPLE_NAMES, help="a recorded person of gaitkit's data")
+    parser.add_argument(
+        "--can",
+        metavar="SPEC",
+        help="auto, socketcan:INTERFACE, udp or udp:GROUP:PORT (default: a private UDP bus)",
+    )
+    parser.add_argument(
+        "--clock",
+        choices=("lockstep", "realtime"),
+        default="lockstep",
+        help="as fast as the firmware answers, or as it was walked, with LCM (default lockstep)",
+    )
+    add_body_options(parser)
+    parser.add_argument("--out", metavar="FILE", help="scores of every tick as CSV")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    from saddlewalk.bus import open_bus
+    from saddlewalk.config import host_arguments, load_config
+    from saddlewalk.gait_events import analyse
+    from saddlewalk.host import running_host
+    from saddlewalk.playback import measurements, play_lockstep, play_realtime, private_udp
+    from saddlewalk.table import write_table
+
+    recording = _load(args)
+    gait = analyse(recording)
+    options = host_arguments(load_config(args))
+    spec = args.can or private_udp()
+    lcm = ["--lcm=none"] if args.clock == "lockstep" else []
+    play = play_lockstep if args.clock == "lockstep" else play_realtime
+    with (
+        open_bus(spec) as bus,
+        running_host(f"--can={spec}", f"--clock={args.clock}", *lcm, *options),
+    ):
+        rows = [score_row(*tick) for tick in play(bus, measurements(recording, gait.contact))]
+    if args.out:
+        write_table(args.out, SCORE_COLUMNS, rows)
+    told = sys.stderr if args.out == "-" else sys.stdout
+    print("\n".join(report(recording, gait, rows)), file=told)
+    return 0
+
+
+def _load(args: argparse.Namespace) -> "Recording":
+    if args.sample:
+        from saddlewalk.samples import load_sample
+
+        return load_sample(args.sample)
+    from saddlewalk.recording import load_recording
+
+    return load_recording(args.trial)
+
+
+def score_row(time_s: float, scores: dict[str, float]) -> list:
+    """One line of --out, in the order of SCORE_COLUMNS."""
+    names = ("V_COMP", "S_PEND", "S_JUMP", "S_SW", "MOS_COM", "MOS_XCOM")
+    return [round(time_s, 6), *(scores[name] for name in names), f"0x{scores['FAULTS']:04x}"]
+
+
+def report(recording: "Recording", gait: "Gait", rows: list[list]) -> list[str]:
+    """Lines `name value unit`: the walk from the markers, the rest from the firmware's scores."""
+    import numpy as np
+
+    columns = dict(zip(SCORE_COLUMNS[:-1], np.array([row[:-1] for row in rows]).T, strict=True))
+    scored = np.isfinite(columns["mos_com_m"])
+    return [
+        f"source {recording.source}",
+        _line("duration", recording.duration_s, "s"),
+        _line("speed", gait.speed_m_s, "m/s"),
+        _line("step_length", gait.step_length_m, "m"),
+        _line("step_width", gait.step_width_m, "m"),
+        _line("min_s_sw", _least(columns["s_sw"])),
+        _line("com_in_bos", _share_positive(columns["mos_com_m"]), "%"),
+        _line("xcom_in_bos", _share_positive(columns["mos_xcom_m"]), "%"),
+        f"ticks_scored {scored.sum()}",
+        f"ticks {len(rows)}",
+    ]
+
+
+def _line(name: str, value: float, unit: str = "") -> str:
+    text = "n/a" if math.isnan(value) else f"{value:.4g}"
+    return f"{name} {text} {unit}".rstrip()
+
+
+def _least(values: "np.ndarray") -> float:
+    return min((value for value in values if math.isfinite(value)), default=math.nan)
+
+
+def _share_positive(values: "np.ndarray") -> float:
+    """Percent of the values that are there; NaN if none is."""
+    there = values[values == values]
+    return 100.0 * float((there > 0).mean()) if len(there) else math.nan
