@@ -11,27 +11,26 @@ build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlew
 demo: build ## one walk, end to end: live in the terminal, results in out/demo
 	@$(BIN)/saddlewalk demo --out out/demo
 
-test: build .venv/installed-test ## every test that this machine can run
-	@rm -rf build/reports
-	@$(BIN)/ninja -C build --quiet tests
-	-@$(BIN)/ctest --preset release --output-junit reports/ctest.xml
-	-@$(BIN)/pytest --junit-xml build/reports/pytest.xml
-	@$(BIN)/python tests/summary.py build/reports/ctest.xml build/reports/pytest.xml
+test: build/build.ninja .venv/installed-test ## every test that this machine can run
+	$(call run_tests,build,release)
 
-test-clang: build-clang/build.ninja .venv/installed-test ## the C tests, built by clang
-	@rm -rf build-clang/reports
-	@$(BIN)/ninja -C build-clang --quiet all tests
-	-@$(BIN)/ctest --preset clang --output-junit reports/ctest.xml
-	@$(BIN)/python tests/summary.py build-clang/reports/ctest.xml
+test-clang: build-clang/build.ninja .venv/installed-test ## the same built by clang, but for the walks over every float
+	$(call run_tests,build-clang,clang)
 
-test-sanitize: build-sanitize/build.ninja .venv/installed-test ## all but the walks over every float
-	@rm -rf build-sanitize/reports
-	@$(BIN)/ninja -C build-sanitize --quiet all tests
-	-@$(BIN)/ctest --preset sanitize --output-junit reports/ctest.xml
-	-@SADDLEWALK_BUILD=build-sanitize LD_PRELOAD="$$(cc -print-file-name=libasan.so)" \
-		LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp:print_suppressions=0 \
-		$(BIN)/pytest --junit-xml build-sanitize/reports/pytest.xml
-	@$(BIN)/python tests/summary.py build-sanitize/reports/ctest.xml build-sanitize/reports/pytest.xml
+test-sanitize: build-sanitize/build.ninja .venv/installed-test ## the same with the address and undefined sanitizers
+	$(call run_tests,build-sanitize,sanitize,$(SANITIZED))
+
+# $(call run_tests,BUILD_DIR,CTEST_PRESET,ENVIRONMENT_OF_PYTEST)
+define run_tests
+	@rm -rf $(1)/reports
+	@$(BIN)/ninja -C $(1) --quiet all tests
+	-@$(BIN)/ctest --preset $(2) --output-junit reports/ctest.xml
+	-@SADDLEWALK_BUILD=$(1) $(3) $(BIN)/pytest --junit-xml $(1)/reports/pytest.xml
+	@$(BIN)/python tests/summary.py $(1)/reports/ctest.xml $(1)/reports/pytest.xml
+endef
+
+SANITIZED = LD_PRELOAD="$$(gcc -print-file-name=libasan.so)" \
+	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp:print_suppressions=0
 
 samples: .venv/installed-samples ## recorded walks, for saddlewalk replay --sample
 
@@ -43,7 +42,7 @@ clean: ## remove all that was built, and the virtual environment
 	rm -rf .venv build build-clang build-sanitize out
 
 help: ## this list
-	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 16
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 15
 
 build/build.ninja: PRESET := release
 build-clang/build.ninja: PRESET := clang
