@@ -150,7 +150,7 @@ def fits() -> list[Fit]:
         ),
         Fit(
             "EXPM1",
-            "exp r - 1 = r (1 + r E(r)), |r| <= ln(2)/2; relative",
+            "exp r - 1 = r + r^2 E(r), |r| <= ln(2)/2; relative",
             lambda r: (mp.expm1(r) - r) / r**2,
             lambda r: r**2 / abs(mp.expm1(r)),
             -half_ln2,

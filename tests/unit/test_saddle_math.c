@@ -188,7 +188,7 @@ static const promise_t ERF = {
     .least_result = -1.0f,
     .greatest_result = 1.0f,
     .absolute_bound = 9.3e-8,
-    .relative_bound = 2.5e-7,
+    .relative_bound = 2.3e-7,
 };
 
 static const promise_t EXP = {
@@ -200,7 +200,7 @@ static const promise_t EXP = {
     .least_result = FLT_MIN,
     .greatest_result = EXP_GREATEST,
     .absolute_bound = NOT_STATED,
-    .relative_bound = 1.0e-7,
+    .relative_bound = 8.3e-8,
 };
 
 static const promise_t MIN_JERK = {

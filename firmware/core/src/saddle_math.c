@@ -29,7 +29,7 @@ static const float ASIN[] = {
     4.21663262e-02f,
 };
 
-/* exp r - 1 = r (1 + r E(r)), |r| <= ln(2)/2; relative: 1.7e-08 */
+/* exp r - 1 = r + r^2 E(r), |r| <= ln(2)/2; relative: 1.7e-08 */
 static const float EXPM1[] = {
     4.99999970e-01f, 1.66665435e-01f, 4.16672006e-02f, 8.36651400e-03f,
     1.38825248e-03f,
@@ -115,7 +115,7 @@ static exp_parts_t exp_parts(float x)
         uint32_t bits;
         float value;
     } scale = {(uint32_t)biased_exponent << 23};
-    return (exp_parts_t){scale.value, r * (1.0f + r * poly)};
+    return (exp_parts_t){scale.value, r + r * r * poly};
 }
 
 float saddle_exp(float x)
