@@ -26,6 +26,7 @@ FAULTS = (
     "RIGHT_STALE",
     "RIGHT_RANGE",
     "FEET_TOGETHER",
+    "SPEED_INFEASIBLE",
 )
 
 SCORES = (("S_pend", "s_pend"), ("S_jump", "s_jump"), ("S_SW", "s_sw"))

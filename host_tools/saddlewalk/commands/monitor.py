@@ -1,6 +1,7 @@
 """`saddlewalk monitor`: what the firmware publishes on LCM, live in the terminal."""
 
 import argparse
+import select
 import sys
 import time
 from dataclasses import dataclass, field
@@ -95,7 +96,7 @@ class Listener:
 def _once(bus: Any, listener: Listener) -> int:
     deadline_s = time.monotonic() + ONCE_S
     while not listener.complete and (left_s := deadline_s - time.monotonic()) > 0:
-        bus.handle_timeout(max(1, round(left_s * 1000)))
+        _receive(bus, left_s)
     print(listener.line())
     return 0 if listener.complete else 1
 
@@ -126,4 +127,10 @@ def _watch_lines(bus: Any, listener: Listener) -> NoReturn:
 def _listen(bus: Any, for_s: float) -> None:
     deadline_s = time.monotonic() + for_s
     while (left_s := deadline_s - time.monotonic()) > 0:
-        bus.handle_timeout(max(1, round(left_s * 1000)))
+        _receive(bus, left_s)
+
+
+def _receive(bus: Any, within_s: float) -> None:
+    """Handle a message if one comes. Ctrl-C inside lcm's own handle_timeout() breaks Python."""
+    if select.select([bus], [], [], within_s)[0]:
+        bus.handle()

@@ -1,0 +1,212 @@
+"""The live view: what it shows of made-up messages, of silence, and how the command ends."""
+
+import io
+import math
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import lcm
+import pytest
+from rich.console import Console
+
+from saddlewalk import dashboard, paths
+from saddlewalk.commands.monitor import CHANNELS, Listener
+from saddlewalk.lcm_types import health_t, plan_t, scores_t
+
+MONITOR = [
+    sys.executable,
+    "-c",
+    "from saddlewalk.cli import main; raise SystemExit(main())",
+    "monitor",
+]
+SILENT = "memq://"
+
+
+def plan() -> plan_t:
+    message = plan_t()
+    message.valid = 1
+    message.phase, message.support, message.step_count = 2, plan_t.RIGHT, 17
+    message.theta_rad = 1.2 * math.pi
+    message.speed_m_s = 1.2
+    message.time_to_heel_strike_s = 0.31
+    return message
+
+
+def scores() -> scores_t:
+    message = scores_t()
+    message.s_pend, message.s_jump, message.s_sw = 0.62, 1.25, math.nan
+    message.mos_com_m, message.mos_xcom_m = 0.083, -0.214
+    return message
+
+
+def health() -> health_t:
+    message = health_t()
+    message.tick, message.measurement_age_us, message.late_ticks = 512, 4200, 3
+    message.frames_bad_crc, message.frames_bad_counter, message.frames_malformed = 1, 2, 4
+    return message
+
+
+def drawn(*view, **kwargs) -> str:
+    console = Console(file=io.StringIO(), width=120)
+    console.print(dashboard.render(*view, **kwargs))
+    return console.file.getvalue()
+
+
+SHOWN = ["phase 2", "60% of the stride", "right", "1.20 m/s", "0.31 s", "0.62", "1.25", "n/a"]
+SHOWN += ["+0.083 m", "-0.214 m", "data age 4 ms", "late ticks 3", "frames rejected 7", "tick 512"]
+
+
+@pytest.mark.parametrize("text", SHOWN)
+def test_every_number_is_shown_drawn_or_as_a_line(text):
+    assert text in drawn(plan(), scores(), health())
+    assert text in dashboard.summary(plan(), scores(), health())
+
+
+def test_the_line_is_one_line():
+    assert "\n" not in dashboard.summary(plan(), scores(), health())
+
+
+@pytest.mark.parametrize("silent_s", [0.0, 1.0])
+def test_fresh_data_are_not_called_old(silent_s):
+    assert "no message" not in drawn(plan(), scores(), health(), silent_s=silent_s)
+    assert "no message" not in dashboard.summary(plan(), scores(), health(), silent_s)
+
+
+def test_silence_of_more_than_a_second_is_said():
+    words = "no message from the firmware for 1.4 s"
+    assert words in drawn(plan(), scores(), health(), silent_s=1.4)
+    assert words in dashboard.summary(plan(), scores(), health(), 1.4)
+    assert words in drawn(None, None, None, silent_s=1.4)
+
+
+@pytest.mark.parametrize("missing", range(3))
+def test_a_channel_that_is_silent_hides_no_other(missing):
+    view = [plan(), scores(), health()]
+    view[missing] = None
+    text = drawn(*view)
+    assert ("phase 2" in text) == (missing != 0)
+    assert ("0.62" in text) == (missing != 1)
+    assert ("tick 512" in text) == (missing != 2)
+
+
+def test_standing_is_said_and_no_numbers_of_a_plan():
+    assert dashboard.gait(plan_t()) == "plan: stand"
+
+
+def test_faults_limits_and_status_are_named():
+    message = health()
+    message.measurement_age_us = -1
+    message.status, message.limits, message.faults = 2, 0b1001, 0b110
+    text = dashboard.condition(message)
+    for name in ("ERROR_CONFIG", "limits SPEED COMMAND_HELD", "faults COM_STALE COM_RANGE"):
+        assert name in text
+    assert "never measured" in text
+    message.status, message.limits = 99, -1
+    assert "status 99" in dashboard.condition(message)
+
+
+@pytest.mark.parametrize(
+    ("header", "kind", "names"),
+    [
+        ("saddlewalk.h", "", dashboard.STATUSES[1:]),
+        ("planner.h", "LIMIT_", dashboard.LIMITS),
+        ("supervisor.h", "FAULT_", dashboard.FAULTS),
+    ],
+)
+def test_names_are_those_of_the_core(header, kind, names):
+    text = (paths.CHECKOUT / "firmware/core/include/saddlewalk" / header).read_text()
+    numbered = r"SADDLE_(ERROR_\w+) = \d" if not kind else rf"SADDLE_{kind}(\w+) = 1u << \d"
+    assert re.findall(numbered, text) == list(names)
+
+
+@pytest.mark.parametrize(
+    ("value", "full"), [(-3.0, 0), (0.0, 0), (0.5, 12), (1.0, 25), (7.0, 25), (math.inf, 25)]
+)
+def test_a_level_is_full_at_the_reference_and_empty_at_the_limit(value, full):
+    bar = dashboard.level_bar(value).plain
+    assert bar == "█" * full + "░" * (25 - full)
+
+
+@pytest.mark.parametrize("value_m", [0.1, 0.4, 3.0, math.inf])
+def test_a_margin_points_right_inside_and_left_outside(value_m):
+    inside, outside = (dashboard.margin_bar(v).plain for v in (value_m, -value_m))
+    assert inside == outside[::-1]
+    left, right = inside.split("│")
+    assert "█" not in left
+    assert right.count("█") == {0.1: 3}.get(value_m, 12)
+
+
+def test_no_number_draws_no_bar():
+    assert set(dashboard.level_bar(math.nan).plain) == {"·"}
+    assert set(dashboard.margin_bar(math.nan).plain) == {"·"}
+
+
+def test_the_listener_keeps_the_newest_and_counts_what_it_cannot_read():
+    listener = Listener()
+    for tick in (1, 2):
+        message = health()
+        message.tick = tick
+        listener.take("SADDLEWALK_HEALTH", message.encode())
+    listener.take("SADDLEWALK_HEALTH", b"")
+    listener.take("SADDLEWALK_HEALTH", scores().encode())
+    listener.take("SADDLEWALK_HEALTH", health().encode()[:-1])
+    assert "tick 2," in listener.line()
+    assert "3 LCM messages could not be read" in listener.line()
+    assert not listener.complete
+
+
+def test_the_listener_knows_for_how_long_it_heard_nothing():
+    listener = Listener()
+    listener.take("SADDLEWALK_PLAN", plan().encode())
+    assert "no message" not in listener.line()
+    listener.heard_s = time.monotonic() - 5
+    assert "no message from the firmware for 5.0 s" in listener.line()
+
+
+def test_once_prints_one_line_of_a_log(tmp_path):
+    log = lcm.EventLog(str(tmp_path / "log"), "w", overwrite=True)
+    for channel, message in zip(CHANNELS, (plan(), scores(), health()), strict=True):
+        log.write_event(0, channel, message.encode())
+    log.close()
+    url = f"file://{tmp_path / 'log'}?speed=0"
+    done = subprocess.run([*MONITOR, "--once", "--lcm", url], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.splitlines() == [dashboard.summary(plan(), scores(), health())]
+
+
+def test_once_fails_when_nothing_comes():
+    done = subprocess.run([*MONITOR, "--once", "--lcm", SILENT], capture_output=True, text=True)
+    assert done.returncode == 1
+    assert done.stdout == "no message from the firmware for 2.0 s\n"
+
+
+def test_lines_without_a_terminal_until_ctrl_c():
+    process = subprocess.Popen([*MONITOR, "--lcm", SILENT], stdout=-1, stderr=-1, text=True)
+    assert "no message from the firmware" in process.stdout.readline()
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=10)
+    assert (process.returncode, errors) == (0, "")
+
+
+def test_a_panel_on_a_terminal_until_ctrl_c():
+    terminal, end = pty.openpty()
+    process = subprocess.Popen([*MONITOR, "--lcm", SILENT], stdout=end, stderr=end)
+    os.close(end)
+    shown = b""
+    while "╯".encode() not in shown:
+        shown += os.read(terminal, 4096)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=10) == 0
+    os.close(terminal)
+    assert b"no message from the firmware" in shown
+
+
+def test_an_unusable_url_is_bad_input():
+    done = subprocess.run([*MONITOR, "--lcm", "nonsense"], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "saddlewalk monitor: LCM cannot use nonsense" in done.stderr
