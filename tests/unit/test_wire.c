@@ -7,11 +7,17 @@
 
 static saddle_wire_receiver_t receiver;
 
-void setUp(void) { memset(&receiver, 0, sizeof receiver); }
+void setUp(void)
+{
+    memset(&receiver, 0, sizeof receiver);
+}
 
-void tearDown(void) {}
+void tearDown(void)
+{
+}
 
-static saddle_frame_t command_frame(uint8_t counter) {
+static saddle_frame_t command_frame(uint8_t counter)
+{
     const saddle_command_t command = {
         .mode = SADDLE_COMMAND_WALK, .speed_m_s = 1.2f, .heel_strike_rad = 0.1745f};
     saddle_frame_t frame;
@@ -19,17 +25,20 @@ static saddle_frame_t command_frame(uint8_t counter) {
     return frame;
 }
 
-static saddle_wire_message_t accept(const saddle_frame_t *frame) {
+static saddle_wire_message_t accept(const saddle_frame_t *frame)
+{
     return saddle_wire_accept(&receiver, frame->id, frame->data, sizeof frame->data);
 }
 
-static void test_crc_check_value(void) {
+static void test_crc_check_value(void)
+{
     TEST_ASSERT_EQUAL_HEX8(0x4B, saddle_wire_crc((const uint8_t *)"123456789", 9));
     TEST_ASSERT_EQUAL_HEX8(0x00, saddle_wire_crc(NULL, 0));
 }
 
 /** Written out by hand from the DBC: 12000, 1745, little endian, version 1. */
-static void test_command_bytes(void) {
+static void test_command_bytes(void)
+{
     const saddle_frame_t frame = command_frame(5);
     const uint8_t covered[9] = {0x00, 0x01, 0x15, 0xE0, 0x2E, 0xD1, 0x06, SADDLE_WIRE_VERSION, 0};
     TEST_ASSERT_EQUAL_HEX16(0x100, frame.id);
@@ -38,7 +47,8 @@ static void test_command_bytes(void) {
     TEST_ASSERT_EQUAL_UINT8(5, saddle_wire_counter(frame.data));
 }
 
-static void test_every_single_bit_error_is_refused(void) {
+static void test_every_single_bit_error_is_refused(void)
+{
     for (size_t bit = 0; bit < 8u * SADDLE_WIRE_LENGTH; ++bit) {
         saddle_frame_t frame = command_frame(0);
         frame.data[bit / 8u] ^= (uint8_t)(1u << (bit % 8u));
@@ -47,7 +57,8 @@ static void test_every_single_bit_error_is_refused(void) {
     TEST_ASSERT_EQUAL_UINT32(64, receiver.bad_crc);
 }
 
-static void test_frame_under_another_identifier_is_refused(void) {
+static void test_frame_under_another_identifier_is_refused(void)
+{
     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
     const saddle_measurement_t measurement = {.com.height_m = 1.0f};
     saddle_wire_encode_measurement(&measurement, 0, frames);
@@ -56,7 +67,8 @@ static void test_frame_under_another_identifier_is_refused(void) {
     TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_crc);
 }
 
-static void test_what_the_firmware_does_not_receive_is_malformed(void) {
+static void test_what_the_firmware_does_not_receive_is_malformed(void)
+{
     const saddle_frame_t frame = command_frame(0);
     const uint32_t identifiers[] = {0x101, 0x127, 0x140, 0x7FF, 0x80000100u, UINT32_MAX};
     for (size_t i = 0; i < sizeof identifiers / sizeof identifiers[0]; ++i) {
@@ -71,7 +83,8 @@ static void test_what_the_firmware_does_not_receive_is_malformed(void) {
     TEST_ASSERT_EQUAL_UINT32(0, receiver.accepted);
 }
 
-static void test_another_wire_version_is_refused(void) {
+static void test_another_wire_version_is_refused(void)
+{
     saddle_frame_t frame = command_frame(0);
     uint8_t covered[9] = {(uint8_t)frame.id, (uint8_t)(frame.id >> 8)};
     frame.data[6] = SADDLE_WIRE_VERSION + 1;
@@ -81,7 +94,8 @@ static void test_another_wire_version_is_refused(void) {
     TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_version);
 }
 
-static void expect_counters(const char *counters, const char *accepted) {
+static void expect_counters(const char *counters, const char *accepted)
+{
     for (size_t i = 0; counters[i] != '\0'; ++i) {
         const char digit = counters[i];
         const saddle_frame_t frame =
@@ -91,7 +105,8 @@ static void expect_counters(const char *counters, const char *accepted) {
     }
 }
 
-static void test_counter_rule(void) {
+static void test_counter_rule(void)
+{
     expect_counters("7", "y");       /* the first, whatever it is */
     expect_counters("8bf3", "yyyy"); /* 1, 3, 4, and 4 over the end */
     expect_counters("334", "nny");   /* repeats */
@@ -101,7 +116,8 @@ static void test_counter_rule(void) {
     expect_counters("c", "y");
 }
 
-static void test_messages_count_apart(void) {
+static void test_messages_count_apart(void)
+{
     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
     const saddle_measurement_t measurement = {.com.height_m = 1.0f};
     saddle_wire_encode_measurement(&measurement, 9, frames);
@@ -111,7 +127,8 @@ static void test_messages_count_apart(void) {
     TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_MEASURED_RIGHT, accept(&frames[2]));
 }
 
-static void test_decoding_leaves_ages_and_other_parts(void) {
+static void test_decoding_leaves_ages_and_other_parts(void)
+{
     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
     const saddle_measurement_t sent = {
         .foot = {{.cop_m = {-0.25f, 0.125f}, .contact = true}, {.cop_m = {0.5f, NAN}}}};
@@ -132,7 +149,8 @@ static void test_decoding_leaves_ages_and_other_parts(void) {
     TEST_ASSERT_EQUAL_UINT32(33, received.foot[SADDLE_RIGHT].age_us);
 }
 
-int main(void) {
+int main(void)
+{
     UNITY_BEGIN();
     RUN_TEST(test_crc_check_value);
     RUN_TEST(test_command_bytes);

@@ -16,17 +16,23 @@
 
 #define NUMBER(signal, raw) ((raw) == NOT_AVAILABLE ? NAN : saddle_can_##signal##_decode(raw))
 
-static bool is_finite(float value) { return value >= -FLT_MAX && value <= FLT_MAX; }
+static bool is_finite(float value)
+{
+    return value >= -FLT_MAX && value <= FLT_MAX;
+}
 
-static float limited(float value, float limit) {
+static float limited(float value, float limit)
+{
     return value > limit ? limit : (value < -limit ? -limit : value);
 }
 
-static uint16_t limited_u16(uint32_t value) {
+static uint16_t limited_u16(uint32_t value)
+{
     return value > UINT16_MAX ? (uint16_t)UINT16_MAX : (uint16_t)value;
 }
 
-uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length) {
+uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length)
+{
     uint8_t crc = 0xFFu;
     for (size_t i = 0; i < length; ++i) {
         crc ^= bytes[i];
@@ -37,7 +43,8 @@ uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length) {
     return crc ^ 0xFFu;
 }
 
-static uint8_t frame_crc(uint32_t id, const uint8_t *data) {
+static uint8_t frame_crc(uint32_t id, const uint8_t *data)
+{
     uint8_t bytes[1u + SADDLE_WIRE_LENGTH] = {(uint8_t)id, (uint8_t)(id >> 8)};
     for (size_t i = 1; i < SADDLE_WIRE_LENGTH; ++i) {
         bytes[i + 1u] = data[i];
@@ -45,22 +52,26 @@ static uint8_t frame_crc(uint32_t id, const uint8_t *data) {
     return saddle_wire_crc(bytes, sizeof bytes);
 }
 
-static void seal(saddle_frame_t *frame, uint16_t id) {
+static void seal(saddle_frame_t *frame, uint16_t id)
+{
     frame->id = id;
     frame->data[0] = frame_crc(id, frame->data);
 }
 
-uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH]) {
+uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH])
+{
     return data[1] & COUNTER_MASK;
 }
 
-static bool follows(uint8_t counter, uint8_t before) {
+static bool follows(uint8_t counter, uint8_t before)
+{
     const uint8_t step = (uint8_t)(counter - before) & COUNTER_MASK;
     return step >= 1u && step <= COUNTER_STEP_MAX;
 }
 
 /** After an accepted frame the candidate is that frame itself, so it adds nothing to the rule. */
-static bool in_step(saddle_wire_alive_t *alive, uint8_t counter) {
+static bool in_step(saddle_wire_alive_t *alive, uint8_t counter)
+{
     if (alive->seen && counter == alive->last) {
         return false;
     }
@@ -74,7 +85,8 @@ static bool in_step(saddle_wire_alive_t *alive, uint8_t counter) {
     return accepted;
 }
 
-static saddle_wire_message_t message_of(uint32_t id) {
+static saddle_wire_message_t message_of(uint32_t id)
+{
     switch (id) {
     case SADDLE_CAN_COMMAND_FRAME_ID: return SADDLE_WIRE_COMMAND;
     case SADDLE_CAN_MEASURED_COM_FRAME_ID: return SADDLE_WIRE_MEASURED_COM;
@@ -84,7 +96,8 @@ static saddle_wire_message_t message_of(uint32_t id) {
     }
 }
 
-static bool speaks_our_version(saddle_wire_message_t message, const uint8_t *data) {
+static bool speaks_our_version(saddle_wire_message_t message, const uint8_t *data)
+{
     if (message != SADDLE_WIRE_COMMAND) {
         return true;
     }
@@ -94,7 +107,8 @@ static bool speaks_our_version(saddle_wire_message_t message, const uint8_t *dat
 }
 
 saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint32_t id,
-                                         const uint8_t *data, size_t length) {
+                                         const uint8_t *data, size_t length)
+{
     const saddle_wire_message_t message = message_of(id);
     uint32_t *count = &receiver->accepted;
     if (length != SADDLE_WIRE_LENGTH || message == SADDLE_WIRE_NONE) {
@@ -110,7 +124,8 @@ saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint3
     return count == &receiver->accepted ? message : SADDLE_WIRE_NONE;
 }
 
-void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_command_t *command) {
+void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_command_t *command)
+{
     struct saddle_can_command_t raw;
     (void)saddle_can_command_unpack(&raw, data, SADDLE_WIRE_LENGTH);
     command->mode = raw.mode;
@@ -118,7 +133,8 @@ void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_c
     command->heel_strike_rad = NUMBER(command_heel_strike, raw.heel_strike);
 }
 
-static void decode_com(const uint8_t *data, saddle_measurement_t *measurement) {
+static void decode_com(const uint8_t *data, saddle_measurement_t *measurement)
+{
     struct saddle_can_measured_com_t raw;
     (void)saddle_can_measured_com_unpack(&raw, data, SADDLE_WIRE_LENGTH);
     measurement->com.height_m = NUMBER(measured_com_height, raw.height);
@@ -126,7 +142,8 @@ static void decode_com(const uint8_t *data, saddle_measurement_t *measurement) {
     measurement->com.velocity_m_s.y = NUMBER(measured_com_vy, raw.vy);
 }
 
-static void decode_left(const uint8_t *data, saddle_measurement_t *measurement) {
+static void decode_left(const uint8_t *data, saddle_measurement_t *measurement)
+{
     struct saddle_can_measured_left_t raw;
     (void)saddle_can_measured_left_unpack(&raw, data, SADDLE_WIRE_LENGTH);
     measurement->foot[SADDLE_LEFT].cop_m.x = NUMBER(measured_left_x, raw.x);
@@ -134,7 +151,8 @@ static void decode_left(const uint8_t *data, saddle_measurement_t *measurement) 
     measurement->foot[SADDLE_LEFT].contact = raw.contact != 0u;
 }
 
-static void decode_right(const uint8_t *data, saddle_measurement_t *measurement) {
+static void decode_right(const uint8_t *data, saddle_measurement_t *measurement)
+{
     struct saddle_can_measured_right_t raw;
     (void)saddle_can_measured_right_unpack(&raw, data, SADDLE_WIRE_LENGTH);
     measurement->foot[SADDLE_RIGHT].cop_m.x = NUMBER(measured_right_x, raw.x);
@@ -144,7 +162,8 @@ static void decode_right(const uint8_t *data, saddle_measurement_t *measurement)
 
 void saddle_wire_decode_measured(saddle_wire_message_t message,
                                  const uint8_t data[SADDLE_WIRE_LENGTH],
-                                 saddle_measurement_t *measurement) {
+                                 saddle_measurement_t *measurement)
+{
     if (message == SADDLE_WIRE_MEASURED_COM) {
         decode_com(data, measurement);
     } else if (message == SADDLE_WIRE_MEASURED_LEFT) {
@@ -162,7 +181,8 @@ void saddle_wire_decode_measured(saddle_wire_message_t message,
         seal((frame), SADDLE_CAN_##id##_FRAME_ID);                                  \
     } while (0)
 
-static void encode_com_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames) {
+static void encode_com_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
+{
     const bool valid = plan->valid;
     ENCODE(&frames[0], plan_com, PLAN_COM, .counter = counter,
            .x = RAW(plan_com_x, valid, plan->com_m.x),
@@ -174,7 +194,8 @@ static void encode_com_plan(const saddle_plan_t *plan, uint8_t counter, saddle_f
            .vz = RAW(plan_com_velocity_vz, valid, plan->com_velocity_m_s.z));
 }
 
-static void encode_feet_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames) {
+static void encode_feet_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
+{
     const bool valid = plan->valid;
     const saddle_vec3_t left_m = plan->foot_m[SADDLE_LEFT];
     const saddle_vec3_t right_m = plan->foot_m[SADDLE_RIGHT];
@@ -191,7 +212,8 @@ static void encode_feet_plan(const saddle_plan_t *plan, uint8_t counter, saddle_
                RAW(plan_swing_time_to_heel_strike, valid, plan->time_to_heel_strike_s));
 }
 
-static void encode_step_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames) {
+static void encode_step_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
+{
     const bool valid = plan->valid;
     ENCODE(&frames[0], plan_landing, PLAN_LANDING, .counter = counter,
            .x = RAW(plan_landing_x, valid, plan->landing_m.x),
@@ -208,12 +230,14 @@ static void encode_step_plan(const saddle_plan_t *plan, uint8_t counter, saddle_
            .step_count = (uint16_t)plan->step_count);
 }
 
-static bool holds(const saddle_scores_t *scores, saddle_valid_t result) {
+static bool holds(const saddle_scores_t *scores, saddle_valid_t result)
+{
     return (scores->valid & (uint32_t)result) != 0u;
 }
 
 static void encode_scores(const saddle_scores_t *scores, uint32_t faults, uint8_t counter,
-                          saddle_frame_t *frames) {
+                          saddle_frame_t *frames)
+{
     const bool step = holds(scores, SADDLE_VALID_STEP);
     const bool gravity = holds(scores, SADDLE_VALID_GRAVITY);
     ENCODE(&frames[0], scores_step, SCORES_STEP, .counter = counter,
@@ -234,7 +258,8 @@ static void encode_scores(const saddle_scores_t *scores, uint32_t faults, uint8_
 }
 
 void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_health_t *health,
-                               uint8_t counter, saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES]) {
+                               uint8_t counter, saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES])
+{
     counter &= COUNTER_MASK;
     encode_com_plan(&output->plan, counter, &frames[0]);
     encode_feet_plan(&output->plan, counter, &frames[2]);
@@ -247,7 +272,8 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
 }
 
 void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,
-                                saddle_frame_t *frame) {
+                                saddle_frame_t *frame)
+{
     ENCODE(frame, command, COMMAND, .counter = counter & COUNTER_MASK,
            .mode = command->mode < 15u ? command->mode : 15u,
            .speed = RAW(command_speed, true, command->speed_m_s),
@@ -256,7 +282,8 @@ void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter
 }
 
 void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uint8_t counter,
-                                    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES]) {
+                                    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES])
+{
     const saddle_vec2_t left_m = measurement->foot[SADDLE_LEFT].cop_m;
     const saddle_vec2_t right_m = measurement->foot[SADDLE_RIGHT].cop_m;
     counter &= COUNTER_MASK;

@@ -1,0 +1,38 @@
+/** LCM as the host uses it: the tick's output and health go out, commands come in. */
+#ifndef SADDLEWALK_HOST_LCM_PORT_H
+#define SADDLEWALK_HOST_LCM_PORT_H
+
+#include <lcm/lcm.h>
+#include <saddlewalk/saddlewalk.h>
+#include <saddlewalk_health_t.h>
+
+/** Called with each command received; with NULL for a message that was none. */
+typedef void saddle_lcm_command_fn(void *user, const saddle_command_t *command);
+
+/** All zero: no LCM, and every call does nothing. */
+typedef struct {
+    lcm_t *lcm;
+    saddle_lcm_command_fn *on_command;
+    void *user;
+    uint64_t not_sent; /**< messages that LCM did not take */
+} saddle_lcm_port_t;
+
+/** False: LCM cannot use the URL, most often for want of a multicast route. */
+bool saddle_lcm_open(saddle_lcm_port_t *port, const char *url);
+
+/** Have commands given to on_command from within saddle_lcm_receive(). */
+void saddle_lcm_subscribe(saddle_lcm_port_t *port, saddle_lcm_command_fn *on_command, void *user);
+
+/** Readable when a message waits; -1 unless subscribed. */
+int saddle_lcm_fd(const saddle_lcm_port_t *port);
+
+/** Handle what waits, `limit` messages at most, without blocking. */
+void saddle_lcm_receive(saddle_lcm_port_t *port, int limit);
+
+/** SADDLEWALK_PLAN, _SCORES, _BOS and _HEALTH, all with health's utime_us. */
+void saddle_lcm_publish(saddle_lcm_port_t *port, const saddle_output_t *output,
+                        const saddlewalk_health_t *health);
+
+void saddle_lcm_close(saddle_lcm_port_t *port);
+
+#endif

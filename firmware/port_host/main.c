@@ -1,0 +1,107 @@
+/** saddlewalk-host: the core on Linux, between CAN and LCM. Exit status 0: ended by SIGINT or
+ *  SIGTERM; 2: an option is wrong, or CAN or LCM cannot be opened. */
+#include "bus.h"
+#include "lcm_port.h"
+#include "options.h"
+#include "runner.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define EXIT_BAD_INPUT 2
+
+/** A signal becomes a byte to read, which the loop waits for like everything else. */
+static int stop_pipe[2];
+
+static void on_signal(int signal_number)
+{
+    const int saved_errno = errno;
+    (void)signal_number;
+    /* Full: there is something to read already. */
+    while (write(stop_pipe[1], "", 1) < 0 && errno == EINTR) {
+    }
+    errno = saved_errno;
+}
+
+static bool catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+    return pipe(stop_pipe) == 0 && fcntl(stop_pipe[1], F_SETFL, O_NONBLOCK) == 0 &&
+           sigaction(SIGINT, &action, NULL) == 0 && sigaction(SIGTERM, &action, NULL) == 0;
+}
+
+/** Multicast is the only provider that lacks something which the user can set up. */
+static void complain_about_lcm(const char *url)
+{
+    const char *right = strncmp(url, "udpm:", 5) == 0
+                            ? "for a multicast route, run `sudo ip route add 224.0.0.0/4 dev lo`"
+                            : "give an LCM URL such as udpm://239.255.76.67:7667?ttl=0";
+    fprintf(stderr, SADDLE_PROGRAM ": --lcm %s cannot be opened: %s, or give --lcm none\n", url,
+            right);
+}
+
+static bool open_ports(const saddle_options_t *options, saddle_bus_t *bus, saddle_lcm_port_t *lcm)
+{
+    if (!saddle_bus_open(bus, options->can)) {
+        fprintf(stderr, SADDLE_PROGRAM ": --can %s: %s\n", options->can, bus->description);
+        return false;
+    }
+    *lcm = (saddle_lcm_port_t){0};
+    if (options->lcm != NULL && !saddle_lcm_open(lcm, options->lcm)) {
+        complain_about_lcm(options->lcm);
+        saddle_bus_close(bus);
+        return false;
+    }
+    return true;
+}
+
+static void print_start(const saddle_options_t *options, const saddle_bus_t *bus)
+{
+    printf(SADDLE_PROGRAM " " SADDLE_VERSION ": CAN %s; LCM %s; clock %s\nready\n",
+           bus->description, options->lcm != NULL ? options->lcm : "none",
+           options->lockstep ? "lockstep" : "realtime");
+    fflush(stdout);
+}
+
+static void print_summary(const saddle_runner_t *runner)
+{
+    const saddle_wire_receiver_t *receiver = &runner->receiver;
+    printf("%" PRIu32 " ticks, %" PRIu32 " late; frames: %" PRIu32 " accepted, rejected %" PRIu32
+           " bad CRC, %" PRIu32 " bad counter, %" PRIu32 " bad version, %" PRIu32
+           " malformed; commands rejected %" PRIu32 "; not sent %" PRIu32 " frames, %" PRIu64
+           " LCM messages\n",
+           runner->ticks, runner->late_ticks, receiver->accepted, receiver->bad_crc,
+           receiver->bad_counter, receiver->bad_version, receiver->malformed,
+           runner->commands_rejected, runner->frames_not_sent, runner->lcm->not_sent);
+}
+
+int main(int argc, char *argv[])
+{
+    saddle_options_t options;
+    const saddle_parsed_t parsed = saddle_options_parse(&options, argc, argv);
+    if (parsed != SADDLE_OPTIONS_RUN) {
+        return parsed == SADDLE_OPTIONS_HELP ? 0 : EXIT_BAD_INPUT;
+    }
+    saddle_bus_t bus;
+    saddle_lcm_port_t lcm;
+    if (!catch_signals()) {
+        perror(SADDLE_PROGRAM ": signals");
+        return 1;
+    }
+    if (!open_ports(&options, &bus, &lcm)) {
+        return EXIT_BAD_INPUT;
+    }
+    saddle_runner_t runner;
+    saddle_runner_init(&runner, &options.config, options.lockstep, &bus, &lcm, stop_pipe[0]);
+    print_start(&options, &bus);
+    saddle_runner_run(&runner);
+    print_summary(&runner);
+    saddle_lcm_close(&lcm);
+    saddle_bus_close(&bus);
+    return 0;
+}

@@ -1,0 +1,150 @@
+#include "options.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DEFAULT_LCM "udpm://239.255.76.67:7667?ttl=0"
+#define DEFAULT_HEIGHT_M 1.79f
+#define DEFAULT_MASS_KG 63.3f
+
+static bool complain(const char *option, const char *value, const char *right)
+{
+    fprintf(stderr, SADDLE_PROGRAM ": --%s %s: give %s\n", option, value, right);
+    return false;
+}
+
+static void *field_of(saddle_config_t *config, const saddle_config_field_t *field)
+{
+    return (char *)config + field->offset;
+}
+
+static float value_of(const saddle_config_t *config, const saddle_config_field_t *field)
+{
+    float value;
+    memcpy(&value, (const char *)config + field->offset, sizeof value);
+    return value;
+}
+
+/** The field whose name is the first `length` characters of a text; NULL: there is none. */
+static const saddle_config_field_t *find_field(const char *name, size_t length)
+{
+    const saddle_config_field_t *field;
+    for (size_t i = 0; (field = saddle_config_field(i)) != NULL; ++i) {
+        if (strlen(field->name) == length && memcmp(field->name, name, length) == 0) {
+            return field;
+        }
+    }
+    return NULL;
+}
+
+static bool set_field(saddle_options_t *options, const char *text)
+{
+    const size_t length = strcspn(text, "=");
+    const saddle_config_field_t *field = find_field(text, length);
+    if (field == NULL || text[length] != '=') {
+        return complain("set", text, "NAME=VALUE with a NAME that --help lists");
+    }
+    char *end;
+    const char *number = text + length + 1;
+    const float value = strtof(number, &end);
+    if (end == number || *end != '\0' || !(value >= field->min && value <= field->max)) {
+        char right[80];
+        snprintf(right, sizeof right, "a number from %g to %g", (double)field->min,
+                 (double)field->max);
+        return complain("set", text, right);
+    }
+    memcpy(field_of(&options->config, field), &value, sizeof value);
+    return true;
+}
+
+static bool set_clock(saddle_options_t *options, const char *text)
+{
+    options->lockstep = strcmp(text, "lockstep") == 0;
+    return options->lockstep || strcmp(text, "realtime") == 0 ||
+           complain("clock", text, "realtime or lockstep");
+}
+
+static bool set_ankle(saddle_options_t *options, const char *text)
+{
+    const bool rigid = strcmp(text, "rigid") == 0;
+    options->config.ankle = rigid ? SADDLE_ANKLE_RIGID : SADDLE_ANKLE_ERF;
+    return rigid || strcmp(text, "erf") == 0 || complain("ankle", text, "erf or rigid");
+}
+
+static void print_help(const saddle_config_t *config)
+{
+    puts("usage: " SADDLE_PROGRAM " [OPTION]...\n"
+         "Walking planner and stability supervisor between CAN and LCM, one tick every 80 ms.\n\n"
+         "  --can SPEC         auto (default), socketcan:INTERFACE, udp, udp:GROUP:PORT\n"
+         "  --lcm URL          default " DEFAULT_LCM "; none: without LCM\n"
+         "  --clock CLOCK      realtime (default); lockstep: one tick for each set of measurements\n"
+         "  --ankle ANKLE      ankle strategy, erf (default) or rigid\n"
+         "  --set NAME=VALUE   a parameter of the person or the device, as often as needed\n"
+         "  --help             this text\n\n"
+         "parameter                   default     from       to");
+    const saddle_config_field_t *field;
+    for (size_t i = 0; (field = saddle_config_field(i)) != NULL; ++i) {
+        printf("  %-24s %8g %8g %8g\n", field->name, (double)value_of(config, field),
+               (double)field->min, (double)field->max);
+    }
+}
+
+static bool take_option(saddle_options_t *options, int letter, char *argv[])
+{
+    switch (letter) {
+    case 'c': options->can = optarg; return true;
+    case 'l': options->lcm = strcmp(optarg, "none") == 0 ? NULL : optarg; return true;
+    case 'k': return set_clock(options, optarg);
+    case 'a': return set_ankle(options, optarg);
+    case 's': return set_field(options, optarg);
+    case ':':
+        fprintf(stderr, SADDLE_PROGRAM ": %s: give a value (see --help)\n", argv[optind - 1]);
+        return false;
+    default:
+        fprintf(stderr, SADDLE_PROGRAM ": %s: give an option that --help lists\n",
+                argv[optind - 1]);
+        return false;
+    }
+}
+
+static bool is_consistent(const saddle_config_t *config)
+{
+    const char *name = saddle_config_check(config);
+    if (name != NULL) {
+        fprintf(stderr, SADDLE_PROGRAM ": --set %s=%.9g: give a value that suits the others\n",
+                name, (double)value_of(config, find_field(name, strlen(name))));
+    }
+    return name == NULL;
+}
+
+saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *argv[])
+{
+    static const struct option known[] = {
+        {"can", required_argument, NULL, 'c'},   {"lcm", required_argument, NULL, 'l'},
+        {"clock", required_argument, NULL, 'k'}, {"ankle", required_argument, NULL, 'a'},
+        {"set", required_argument, NULL, 's'},   {"help", no_argument, NULL, 'h'},
+        {NULL, 0, NULL, 0}};
+    *options = (saddle_options_t){
+        .can = "auto",
+        .lcm = DEFAULT_LCM,
+        .config = saddle_config_default(DEFAULT_HEIGHT_M, DEFAULT_MASS_KG),
+    };
+    int letter;
+    opterr = 0;
+    while ((letter = getopt_long(argc, argv, ":", known, NULL)) != -1) {
+        if (letter == 'h') {
+            print_help(&options->config);
+            return SADDLE_OPTIONS_HELP;
+        }
+        if (!take_option(options, letter, argv)) {
+            return SADDLE_OPTIONS_WRONG;
+        }
+    }
+    if (optind < argc) {
+        fprintf(stderr, SADDLE_PROGRAM ": %s: give options only (see --help)\n", argv[optind]);
+        return SADDLE_OPTIONS_WRONG;
+    }
+    return is_consistent(&options->config) ? SADDLE_OPTIONS_RUN : SADDLE_OPTIONS_WRONG;
+}

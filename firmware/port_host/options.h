@@ -1,0 +1,25 @@
+/** The command line of saddlewalk-host. */
+#ifndef SADDLEWALK_HOST_OPTIONS_H
+#define SADDLEWALK_HOST_OPTIONS_H
+
+#include <saddlewalk/saddlewalk.h>
+
+#define SADDLE_PROGRAM "saddlewalk-host"
+
+typedef struct {
+    const char *can; /**< as saddle_bus_open() takes it */
+    const char *lcm; /**< an LCM URL; NULL: no LCM */
+    bool lockstep;
+    saddle_config_t config;
+} saddle_options_t;
+
+typedef enum { SADDLE_OPTIONS_RUN, SADDLE_OPTIONS_HELP, SADDLE_OPTIONS_WRONG } saddle_parsed_t;
+
+/**
+ * Read the options. SADDLE_OPTIONS_HELP: the help was printed. SADDLE_OPTIONS_WRONG: one line on
+ * standard error names the option, its value and what would be right. Otherwise the configuration
+ * has passed saddle_config_check(). The strings are argv's.
+ */
+saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *argv[]);
+
+#endif
