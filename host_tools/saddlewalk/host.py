@@ -25,16 +25,10 @@ def running_host(*options: str) -> Iterator[subprocess.Popen]:
     try:
         _await_ready(process)
         yield process
-        process.terminate()
-        words, _ = process.communicate(timeout=STOP_TIMEOUT_S)
-        if process.returncode != 0:
-            raise _failed(process, words)
-    except subprocess.TimeoutExpired:
-        raise UserError(f"saddlewalk-host did not end within {STOP_TIMEOUT_S:g} s") from None
     finally:
-        process.kill()
-        process.wait()
-        process.stdout.close()
+        words = _stop(process)
+    if process.returncode != 0:
+        raise _failed(process, words)
 
 
 def _await_ready(process: subprocess.Popen) -> None:
@@ -50,6 +44,16 @@ def _await_ready(process: subprocess.Popen) -> None:
         watchdog.cancel()
     process.wait()
     raise _failed(process, words)
+
+
+def _stop(process: subprocess.Popen) -> str:
+    """Its last words. A process that ignores SIGTERM is killed, which its status then shows."""
+    process.terminate()
+    try:
+        return process.communicate(timeout=STOP_TIMEOUT_S)[0]
+    except subprocess.TimeoutExpired:
+        process.kill()
+        return process.communicate()[0]
 
 
 def _failed(process: subprocess.Popen, words: str) -> UserError:

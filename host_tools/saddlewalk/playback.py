@@ -60,7 +60,7 @@ def measurements(recording: Recording, contact: np.ndarray) -> Iterator[tuple[fl
 class TickReader:
     """Gathers the frames of a tick; HEALTH is its last."""
 
-    NAMES = frozenset({"SCORES_STEP", "SCORES_MARGIN", "SCORES_FORCE", "HEALTH"})
+    SCORES = ("SCORES_STEP", "SCORES_MARGIN", "SCORES_FORCE")
 
     def __init__(self) -> None:
         self._receiver = Receiver()
@@ -75,11 +75,10 @@ class TickReader:
         self._latest[name] = signals
         if name != "HEALTH":
             return None
-        tick, self._latest = self._latest, {}
-        counters = {tick[part]["COUNTER"] for part in tick if part in self.NAMES}
-        if not tick.keys() >= self.NAMES or len(counters) > 1:
+        tick = [self._latest.get(part) for part in self.SCORES]
+        if any(part is None or part["COUNTER"] != signals["COUNTER"] for part in tick):
             return None
-        return tick["SCORES_STEP"] | tick["SCORES_MARGIN"] | tick["SCORES_FORCE"]
+        return {name: value for part in tick for name, value in part.items()}
 
 
 def play_lockstep(

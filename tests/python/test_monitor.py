@@ -165,7 +165,11 @@ def test_the_listener_knows_for_how_long_it_heard_nothing():
     listener.take("SADDLEWALK_PLAN", plan().encode())
     assert "no message" not in listener.line()
     listener.heard_s = time.monotonic() - 5
-    assert "no message from the firmware for 5.0 s" in listener.line()
+    assert re.search(r"no message from the firmware for 5\.\d s", listener.line())
+    listener.take("SADDLEWALK_PLAN", b"unreadable")
+    assert "no message" in listener.line()
+    listener.take("SADDLEWALK_PLAN", plan().encode())
+    assert "no message" not in listener.line()
 
 
 def test_once_prints_one_line_of_a_log(tmp_path):
@@ -182,7 +186,7 @@ def test_once_prints_one_line_of_a_log(tmp_path):
 def test_once_fails_when_nothing_comes():
     done = subprocess.run([*MONITOR, "--once", "--lcm", SILENT], capture_output=True, text=True)
     assert done.returncode == 1
-    assert done.stdout == "no message from the firmware for 2.0 s\n"
+    assert re.fullmatch(r"no message from the firmware for \d\.\d s\n", done.stdout)
 
 
 def test_lines_without_a_terminal_until_ctrl_c():
@@ -206,7 +210,8 @@ def test_a_panel_on_a_terminal_until_ctrl_c():
     assert b"no message from the firmware" in shown
 
 
-def test_an_unusable_url_is_bad_input():
+def test_an_unusable_url_is_one_line():
     done = subprocess.run([*MONITOR, "--lcm", "nonsense"], capture_output=True, text=True)
     assert done.returncode == 2
-    assert "saddlewalk monitor: LCM cannot use nonsense" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert "nonsense" in done.stderr

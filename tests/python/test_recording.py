@@ -11,7 +11,7 @@ import pytest
 from saddlewalk import paths
 from saddlewalk.cli import main
 from saddlewalk.errors import UserError
-from saddlewalk.gait_events import analyse
+from saddlewalk.gait_events import FootEvents, analyse, mean_speed
 from saddlewalk.recording import COLUMNS, Recording, load_recording
 from saddlewalk.samples import SAMPLES, load_sample
 from synthetic_walk import Walk, csv_text
@@ -81,6 +81,20 @@ def test_contact_is_known_wherever_the_trial_begins(phase):
     assert wrong[:, middle].sum() <= starts
 
 
+def test_a_trial_may_begin_just_before_a_heel_strike():
+    walk = Walk(phase=0.05)
+    assert strikes(walk.recording(), 0)[0] == pytest.approx(walk.heel_strikes_s(0)[0], abs=0.01)
+
+
+def test_speed_is_that_between_the_first_heel_strike_and_the_last():
+    time_s = np.arange(50) / 10
+    com_m = np.stack([time_s**2, 0 * time_s, 0 * time_s], axis=1)
+    recording = Recording("", time_s, com_m, np.zeros((2, 50, 3)), np.zeros((2, 50, 3)))
+    none = np.array([], dtype=int)
+    left, right = FootEvents(np.array([20, 40]), none), FootEvents(np.array([10, 30]), none)
+    assert mean_speed(recording, (left, right)) == pytest.approx((16 - 1) / (4 - 1))
+
+
 def test_one_marker_a_foot_is_enough():
     walk = Walk()
     recording = walk.recording()
@@ -94,12 +108,14 @@ def test_missing_samples_stay_missing_and_hide_no_other_event():
     recording = Walk().recording()
     recording.heel_m[0, 100:130] = np.nan
     recording.heel_m[1, 105:107] = np.nan
+    recording.toe_m[0, 180:184, 1] = np.nan
     recording.com_m[200, 0] = np.nan
     gait = analyse(recording)
     assert recording.time_s[gait.events[1].heel_strikes] == pytest.approx(whole)
     assert np.isnan(recording.cop_m[0, 100:130]).all()
     assert np.isnan(recording.com_velocity_m_s[[198, 199, 201, 202], 0]).tolist() == [0, 1, 1, 0]
     assert gait.step_length_m == pytest.approx(0.65, abs=0.002)
+    assert gait.step_width_m == pytest.approx(0.12, abs=0.002)
 
 
 def test_someone_who_stands_takes_no_step():
