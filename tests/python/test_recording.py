@@ -108,7 +108,7 @@ def test_missing_samples_stay_missing_and_hide_no_other_event():
     recording = Walk().recording()
     recording.heel_m[0, 100:130] = np.nan
     recording.heel_m[1, 105:107] = np.nan
-    recording.toe_m[0, 180:184, 1] = np.nan
+    recording.toe_m[0, 140:144, 1] = np.nan
     recording.com_m[200, 0] = np.nan
     gait = analyse(recording)
     assert recording.time_s[gait.events[1].heel_strikes] == pytest.approx(whole)
