@@ -1,0 +1,413 @@
+"""An emulated wearer and exoskeleton: what the firmware's plan does to a body that can fall.
+
+The CoM is a linear inverted pendulum about the CoP, and the CoP cannot leave the feet that stand.
+The feet follow the planned swing with a lag and stay where they land. The wearer steers by the
+CoP alone (ankle strategy) and, once the XCoM is further off than that can mend, shifts the next
+landing by the rest (stepping strategy).
+
+Points of the transverse plane are complex numbers, x forward + 1j * y to the left, in metres: a
+step of 1 ms in plain floats is ten times faster than in arrays. World frame: x from the start,
+y from the walking line, z from the ground.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+GRAVITY_M_S2 = 9.80665
+STEP_S = 1e-3
+LEFT, RIGHT = 0, 1
+
+
+@dataclass(frozen=True)
+class Body:
+    """The wearer. Mass, height and pendulum ratio as in the firmware's configuration.
+
+    `double_support`, `heel_m` and `toe_m` were tuned in November 2026 so that the unperturbed XCoM
+    and speed vary as in recorded adults (0.07 m, 0.12 m/s); tests/python/test_emulator.py holds it.
+    """
+
+    mass_kg: float = 63.3
+    height_m: float = 1.79
+    pendulum_ratio: float = 0.57
+    foot_half_length_m: float = 0.10  # reach of the CoP from the middle of the foot
+    foot_half_width_m: float = 0.03
+    double_support: float = 0.16  # share of a step after heel strike with both feet loaded
+    heel_m: float = -0.02  # where the CoP of a steady walk enters the foot, from its middle
+    toe_m: float = 0.08  # and where it leaves
+    cop_gain: float = 1.5  # XCoM errors shrink at cop_gain * natural frequency
+    cop_lag_s: float = 0.03
+    foot_lag_s: float = 0.03
+    ankle_band_m: complex = 0.05 + 0.02j  # XCoM error that stepping leaves to the ankles
+    step_reach_m: complex = 0.30 + 0.25j  # largest shift of a landing
+    crossing_m: float = 0.15  # the swing foot may cross the stance foot's line by this much
+    fall_height: float = 0.75  # of the pendulum length: lower is a fall
+
+    @property
+    def pendulum_m(self) -> float:
+        return self.pendulum_ratio * self.height_m
+
+    @property
+    def natural_frequency_rad_s(self) -> float:
+        return math.sqrt(GRAVITY_M_S2 / self.pendulum_m)
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviations of what is measured, and of the wearer's own unsteadiness."""
+
+    position_m: float = 0.002
+    velocity_m_s: float = 0.02
+    cop_m: float = 0.004  # of the commanded CoP, correlated over cop_time_s
+    cop_time_s: float = 0.2
+
+    def scaled(self, factor: float) -> "Noise":
+        return Noise(
+            self.position_m * factor,
+            self.velocity_m_s * factor,
+            self.cop_m * factor,
+            self.cop_time_s,
+        )
+
+
+@dataclass(frozen=True)
+class Push:
+    """An impulse on the CoM, spread evenly over STEPS of physics from `time_s` of the walk on."""
+
+    STEPS = 100
+    impulse_n_s: float
+    time_s: float
+    direction_deg: float  # 0 forward, 90 to the left
+
+    @property
+    def vector_n_s(self) -> complex:
+        angle = math.radians(self.direction_deg)
+        return self.impulse_n_s * complex(math.cos(angle), math.sin(angle))
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The firmware's plan at one tick: x from the planned stance CoP, y from the walking line."""
+
+    support: int
+    step_count: int  # modulo 65536
+    step_length_m: float
+    speed_m_s: float
+    com_m: complex
+    velocity_m_s: complex
+    feet_m: tuple[complex, complex]
+    foot_heights_m: tuple[float, float]
+    swing_velocity_m_s: float  # forward
+    swing_rise_m_s: float
+    time_to_heel_strike_s: float
+    landing_m: complex
+    leg_length_m: float
+
+    @property
+    def step_s(self) -> float:
+        return self.step_length_m / self.speed_m_s
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What the exoskeleton's sensors tell; feet relative to the CoM."""
+
+    height_m: float
+    velocity_m_s: complex
+    feet_m: tuple[complex, complex]
+    contact: tuple[bool, bool]
+
+
+class SteadyStep:
+    """The XCoM of the steady walk that feet can produce.
+
+    The plan's CoM moves at constant speed, for which the CoP would have to glide along under it. A
+    wearer takes the same steps at the same times with a CoP that crosses to the new foot during
+    double support and then rolls from heel to toe. While the CoP p moves evenly, the XCoM is
+    p + p'/w + c exp(w t); c follows from each step being the mirror image of the one before.
+
+    Left support; x from the stance foot, y from the walking line, time from heel strike.
+    """
+
+    def __init__(self, body: Body, step_m: float, width_m: float, step_s: float) -> None:
+        self._w = w = body.natural_frequency_rad_s
+        self._crossing_s = crossing_s = body.double_support * step_s
+        self._enter = complex(body.heel_m, width_m / 2)
+        leave = complex(body.toe_m, width_m / 2)
+        self._start = leave.conjugate() - step_m
+        self._crossing = (self._enter - self._start) / crossing_s
+        self._roll = (leave - self._enter) / (step_s - crossing_s)
+
+        jump = (self._crossing - self._roll) / w
+        grown, late = math.exp(-w * step_s), math.exp(-w * crossing_s)
+        forward = jump.real * (1 - late) / (1 - grown)
+        lateral = (jump.imag * late - (self._crossing + self._roll).imag / w) / (1 + grown)
+        self._end_s = step_s
+        self._end_offset = complex(forward, lateral)
+        self._crossed_offset = self._end_offset * math.exp(w * (crossing_s - step_s)) - jump
+
+    def at(self, time_s: float) -> tuple[complex, complex]:
+        """CoP and XCoM `time_s` after heel strike, in [0, step_s]."""
+        if time_s < self._crossing_s:
+            cop, rate = self._start + self._crossing * time_s, self._crossing
+            offset = self._crossed_offset * math.exp(self._w * (time_s - self._crossing_s))
+        else:
+            cop, rate = self._enter + self._roll * (time_s - self._crossing_s), self._roll
+            offset = self._end_offset * math.exp(self._w * (time_s - self._end_s))
+        return cop, cop + rate / self._w + offset
+
+
+@dataclass
+class Foot:
+    position_m: complex
+    height_m: float = 0.0
+    velocity_m_s: complex = 0j
+    contact: bool = True
+    leg_m: float = 0.0  # length of the leg when it last carried
+
+    def land(self) -> None:
+        self.height_m, self.velocity_m_s, self.contact = 0.0, 0j, True
+
+
+def _limited(point: complex, limit: complex) -> complex:
+    return complex(
+        min(max(point.real, -limit.real), limit.real), min(max(point.imag, -limit.imag), limit.imag)
+    )
+
+
+class Wearer:
+    """Stands until the first plan comes, then is found walking in its posture, and follows it.
+
+    `follow(plan)` gives the newest plan, `step()` advances by 1 ms. One seed, one sequence of
+    calls: the same bits. A fall is for good: `fallen` when the CoM is lower over every supporting
+    foot than `fall_height` of the pendulum, that is too far away from them to be carried.
+    """
+
+    PLAN_MAX_AGE_S = 0.3  # an older plan is not followed any more
+
+    def __init__(
+        self,
+        body: Body | None = None,
+        noise: Noise | None = None,
+        pushes: tuple[Push, ...] = (),
+        seed: int = 0,
+    ) -> None:
+        self.body = body or Body()
+        self.noise = noise or Noise()
+        self.pushes = pushes
+        self.time_s = 0.0  # since the walk began
+        self.com_m = self.cop_m = 0j
+        self.velocity_m_s = 0j
+        self.height_m = self.body.pendulum_m
+        self.rise_m_s = 0.0
+        self.feet = [Foot(0.1j, leg_m=self.height_m), Foot(-0.1j, leg_m=self.height_m)]
+        self.fallen = False
+        self.fell_at_s = math.nan
+        self.pushed_n_s = 0j  # impulse received so far
+        self.xcom_error_m = 0j
+        self._random = np.random.default_rng(seed)
+        self._plan: Plan | None = None
+        self._plan_age_s = 0.0
+        self._origin_m = 0.0  # world x of the planned stance foot
+        self._leading = LEFT  # the foot that landed last
+        self._since_landing_s = math.inf
+        self._unsteadiness = 0j
+        self._steps = 0
+        self._started = False
+        wt = self.body.natural_frequency_rad_s * STEP_S
+        self._cosh, self._sinh = math.cosh(wt), math.sinh(wt)
+
+    @property
+    def xcom_m(self) -> complex:
+        return self.com_m + self.velocity_m_s / self.body.natural_frequency_rad_s
+
+    def measure(self) -> Measurement:
+        """What noisy sensors see now; every call draws its own noise."""
+        position, velocity = self.noise.position_m, self.noise.velocity_m_s
+        draw = [float(value) for value in self._random.standard_normal(7)]
+        left, right = (foot.position_m - self.com_m for foot in self.feet)
+        return Measurement(
+            height_m=self.height_m + position * draw[0],
+            velocity_m_s=self.velocity_m_s + velocity * complex(draw[1], draw[2]),
+            feet_m=(
+                left + position * complex(draw[3], draw[4]),
+                right + position * complex(draw[5], draw[6]),
+            ),
+            contact=(self.feet[LEFT].contact, self.feet[RIGHT].contact),
+        )
+
+    @property
+    def origin_m(self) -> float:
+        """World x of the planned stance foot."""
+        return self._origin_m
+
+    def follow(self, plan: Plan | None) -> None:
+        """Take the newest plan; None while no walk is planned."""
+        before, self._plan, self._plan_age_s = self._plan, plan, 0.0
+        if plan is None or self.fallen:
+            return
+        width_m = abs(plan.landing_m.imag - plan.feet_m[plan.support].imag)
+        self._steady = SteadyStep(self.body, plan.step_length_m, width_m, plan.step_s)
+        if not self._started:
+            self._start(plan)
+        elif before is not None:
+            heel_strikes = (plan.step_count - before.step_count) % 65536
+            self._origin_m += heel_strikes * plan.step_length_m
+        if not self.feet[plan.support].contact:
+            self._land(plan.support)
+
+    def _start(self, plan: Plan) -> None:
+        self._started = True
+        self._leading = plan.support
+        for side, foot in enumerate(self.feet):
+            foot.position_m = plan.feet_m[side]
+            foot.height_m = plan.foot_heights_m[side]
+            foot.contact = side == plan.support
+            foot.leg_m = plan.leg_length_m
+        self.com_m = plan.com_m
+        self.cop_m, xcom = self._reference()
+        self.velocity_m_s = (xcom - self.com_m) * self.body.natural_frequency_rad_s
+
+    def step(self) -> None:
+        """Advance by STEP_S."""
+        if self._started:
+            self._steps += 1
+            self.time_s = self._steps * STEP_S
+        if self.fallen:
+            return
+        self._plan_age_s += STEP_S
+        self._since_landing_s += STEP_S
+        if self._plan_age_s > self.PLAN_MAX_AGE_S:
+            self._plan = None
+        cop, xcom = self._reference()
+        self.xcom_error_m = self.xcom_m - xcom
+        self._move_feet()
+        self._move_cop(cop + (1 + self.body.cop_gain) * self.xcom_error_m)
+        self._move_com()
+        self._carry()
+
+    def _reference(self) -> tuple[complex, complex]:
+        """CoP and XCoM to be at, in the world: those of the plan's steady walk, else midway."""
+        plan = self._plan
+        if plan is None:
+            middle = (self.feet[LEFT].position_m + self.feet[RIGHT].position_m) / 2
+            return middle, middle
+        since_strike = plan.step_s - plan.time_to_heel_strike_s + self._plan_age_s
+        ahead, time_s = divmod(since_strike, plan.step_s)
+        cop, xcom = self._steady.at(time_s)
+        if plan.support ^ (int(ahead) & 1) == RIGHT:
+            cop, xcom = cop.conjugate(), xcom.conjugate()
+        stance = self._origin_m + ahead * plan.step_length_m
+        return stance + cop, stance + xcom
+
+    def _move_feet(self) -> None:
+        plan = self._plan
+        if plan is None:
+            for side in (LEFT, RIGHT):
+                if not self.feet[side].contact:
+                    self._land(side)
+            return
+        swing = RIGHT if plan.support == LEFT else LEFT
+        foot = self.feet[swing]
+        due = self._plan_age_s >= plan.time_to_heel_strike_s
+        if foot.contact:
+            foot.contact = due or self._since_landing_s < self.body.double_support * plan.step_s
+        else:
+            self._swing(plan, swing, foot)
+            if due:
+                self._land(swing)
+
+    def _swing(self, plan: Plan, side: int, foot: Foot) -> None:
+        """Critically damped pursuit of the planned foot, shifted by what the ankles cannot mend."""
+        age = self._plan_age_s
+        target = self._origin_m + plan.feet_m[side] + plan.swing_velocity_m_s * age
+        target = complex(min(target.real, self._origin_m + plan.landing_m.real), target.imag)
+        target += self._landing_shift(plan.time_to_heel_strike_s - age)
+        outward = 1 if side == LEFT else -1
+        line = self.feet[plan.support].position_m.imag - outward * self.body.crossing_m
+        if outward * (target.imag - line) < 0:
+            target = complex(target.real, line)
+        lag = self.body.foot_lag_s
+        pull = (target - foot.position_m) / lag + 2 * (plan.swing_velocity_m_s - foot.velocity_m_s)
+        foot.velocity_m_s += pull * (STEP_S / lag)
+        foot.position_m += foot.velocity_m_s * STEP_S
+        foot.height_m = max(plan.foot_heights_m[side] + plan.swing_rise_m_s * age, 0.0)
+
+    def _landing_shift(self, time_to_landing_s: float) -> complex:
+        """The XCoM error that will be left at landing when the ankles do what they can."""
+        beyond = self.xcom_error_m - _limited(self.xcom_error_m, self.body.ankle_band_m)
+        growth = math.exp(self.body.natural_frequency_rad_s * max(time_to_landing_s, 0.0))
+        return _limited(beyond * growth, self.body.step_reach_m)
+
+    def _land(self, side: int) -> None:
+        self.feet[side].land()
+        self._leading = side
+        self._since_landing_s = 0.0
+
+    def _trailing_share(self) -> float:
+        """The most of the load that the trailing foot may carry: it hands over what it has."""
+        if not self.feet[1 - self._leading].contact:
+            return 0.0
+        if self._plan is None:
+            return 1.0
+        duration_s = self.body.double_support * self._plan.step_s
+        return max(1.0 - self._since_landing_s / duration_s, 0.0)
+
+    def _move_cop(self, wanted: complex) -> None:
+        """Follow the wanted CoP with a lag, within the hull of the feet that stand."""
+        noise = self.noise
+        if noise.cop_m:
+            mix = STEP_S / noise.cop_time_s
+            x, y = self._random.standard_normal(2)
+            kick = noise.cop_m * math.sqrt(2 * mix)
+            self._unsteadiness += complex(x, y) * kick - self._unsteadiness * mix
+        cop = self.cop_m + (wanted + self._unsteadiness - self.cop_m) * (
+            STEP_S / self.body.cop_lag_s
+        )
+        middle = self.feet[self._leading].position_m
+        share = self._trailing_share()
+        if share > 0:
+            apart = self.feet[1 - self._leading].position_m - middle
+            along = ((cop - middle) * apart.conjugate()).real / (abs(apart) ** 2 or 1.0)
+            middle += min(max(along, 0.0), share) * apart
+        sole = complex(self.body.foot_half_length_m, self.body.foot_half_width_m)
+        self.cop_m = middle + _limited(cop - middle, sole)
+
+    def _move_com(self) -> None:
+        """The pendulum's closed form over one step, and the pushes."""
+        w = self.body.natural_frequency_rad_s
+        lever, velocity = self.com_m - self.cop_m, self.velocity_m_s
+        self.com_m = self.cop_m + lever * self._cosh + velocity * (self._sinh / w)
+        self.velocity_m_s = lever * (w * self._sinh) + velocity * self._cosh
+        for push in self.pushes:
+            if 0 < self._steps - round(push.time_s / STEP_S) <= Push.STEPS:
+                impulse = push.vector_n_s / Push.STEPS
+                self.velocity_m_s += impulse / self.body.mass_kg
+                self.pushed_n_s += impulse
+
+    def _carry(self) -> None:
+        """Height from the legs that carry; a fall when none can."""
+        reach = self.body.pendulum_m * math.sqrt(1 - self.body.fall_height**2)
+        leading, trailing = self.feet[self._leading], self.feet[1 - self._leading]
+        if self._plan is not None and self._plan.support == self._leading:
+            leading.leg_m = self._plan.leg_length_m
+        distances = [
+            abs(self.com_m - foot.position_m) for foot in (leading, trailing) if foot.contact
+        ]
+        if min(distances) > reach:
+            self.fallen, self.fell_at_s = True, self.time_s
+            self.velocity_m_s, self.rise_m_s = 0j, 0.0
+            return
+        height = self._height_over(leading)
+        if trailing.contact:
+            apart = trailing.position_m - leading.position_m
+            along = ((self.cop_m - leading.position_m) * apart.conjugate()).real / abs(apart) ** 2
+            share = min(max(along, 0.0), 1.0)
+            height += share * (self._height_over(trailing) - height)
+        self.rise_m_s = (height - self.height_m) / STEP_S
+        self.height_m = height
+
+    def _height_over(self, foot: Foot) -> float:
+        squared = foot.leg_m**2 - abs(self.com_m - foot.position_m) ** 2
+        return math.sqrt(max(squared, 0.0))
