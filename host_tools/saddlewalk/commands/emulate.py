@@ -1,0 +1,147 @@
+"""`saddlewalk emulate`: an emulated wearer for firmware that is already running."""
+
+import argparse
+import math
+from typing import TYPE_CHECKING, Any
+
+from saddlewalk.options import number_in, whole_number_in
+
+if TYPE_CHECKING:
+    from saddlewalk.emulator import Push, Wearer
+    from saddlewalk.exoskeleton import Command
+
+IMPULSE_MAX_N_S = 1000.0
+DURATION_MAX_S = 86400.0
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser("emulate", help="be the wearer of a running firmware")
+    add_walk_options(parser, clock="realtime", pushes=())
+    parser.add_argument(
+        "--noise-scale",
+        type=number_in(0, 100),
+        default=1.0,
+        metavar="X",
+        help="of the sensors and of the wearer's unsteadiness (default 1)",
+    )
+    parser.set_defaults(run=run)
+
+
+def add_walk_options(parser: argparse.ArgumentParser, clock: str, pushes: tuple[str, ...]) -> None:
+    """What emulate and demo have in common."""
+    default = f" (default {' '.join(pushes)})" if pushes else ""
+    parser.add_argument(
+        "--can", default="auto", metavar="SPEC", help="auto, socketcan:INTERFACE, udp[:GROUP:PORT]"
+    )
+    parser.add_argument("--lcm", metavar="URL", help="default: udpm on this machine")
+    parser.add_argument(
+        "--clock",
+        choices=("realtime", "lockstep"),
+        default=clock,
+        help=f"the wall clock, or as fast as the firmware answers (default {clock})",
+    )
+    parser.add_argument("--speed", type=number_in(1e-3, 10, "m/s"), default=1.2, metavar="M/S")
+    parser.add_argument(
+        "--hs-angle",
+        type=number_in(0, 30, "degrees"),
+        default=10.0,
+        metavar="DEG",
+        help="foot angle at heel strike (default 10)",
+    )
+    parser.add_argument(
+        "--duration", type=number_in(0.08, DURATION_MAX_S, "s"), default=20.0, metavar="S"
+    )
+    parser.add_argument(
+        "--push",
+        type=push_text,
+        action="append",
+        metavar="N.S@S:DEG",
+        help="impulse at a time in a direction, 0 forward, 90 to the left; repeatable" + default,
+    )
+    parser.add_argument("--seed", type=whole_number_in(0, 2**32 - 1), default=0, metavar="N")
+
+
+def push_text(text: str) -> tuple[float, float, float]:
+    """An argparse type: IMPULSE@TIME:DIRECTION in N s, s and degrees."""
+    impulse_text, at, rest = text.partition("@")
+    time_text, colon, direction_text = rest.partition(":")
+    try:
+        impulse, time_s, direction = map(float, (impulse_text, time_text, direction_text))
+    except ValueError:
+        impulse = time_s = direction = math.nan
+    good = 0 < impulse <= IMPULSE_MAX_N_S and 0 <= time_s <= DURATION_MAX_S
+    if not (at and colon and good and -360 <= direction <= 360):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} must be IMPULSE@TIME:DIRECTION such as 20@8:90, "
+            f"up to {IMPULSE_MAX_N_S:g} N s, from 0 s, -360 to 360 degrees"
+        )
+    return impulse, time_s, direction
+
+
+def run(args: argparse.Namespace) -> int:
+    from saddlewalk.bus import describe, open_bus
+    from saddlewalk.emulator import Noise
+    from saddlewalk.exoskeleton import Exoskeleton
+    from saddlewalk.lcmbus import open_lcm
+
+    wearer = wearer_of(args, Noise().scaled(args.noise_scale))
+    lcm = open_lcm(args.lcm)
+    with open_bus(args.can) as bus:
+        print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
+        events = events_printer(wearer)
+        exoskeleton = Exoskeleton(bus, wearer, command_of(args), lcm, [events])
+        exoskeleton.run(args.clock, args.duration)
+    print(summary(wearer, exoskeleton))
+    return 1 if wearer.fallen else 0
+
+
+def wearer_of(args: argparse.Namespace, noise: Any) -> "Wearer":
+    from saddlewalk.emulator import Push, Wearer
+
+    pushes = tuple(Push(*push) for push in args.push or ())
+    return Wearer(noise=noise, pushes=pushes, seed=args.seed)
+
+
+def command_of(args: argparse.Namespace) -> "Command":
+    from saddlewalk.exoskeleton import Command
+
+    return Command(args.speed, math.radians(args.hs_angle))
+
+
+def events_printer(wearer: "Wearer") -> Any:
+    """An observer that tells the start, each push and a fall, once each."""
+    from saddlewalk.exoskeleton import Observer
+
+    class Events(Observer):
+        def __init__(self) -> None:
+            self._due = sorted(wearer.pushes, key=lambda push: push.time_s)
+            self._walking = self._fallen = False
+
+        def tick(self, tick: Any, wearer: "Wearer") -> None:
+            if tick.plan and not self._walking:
+                self._walking = True
+                self._tell(tick, f"walking at {tick.plan.speed_m_s:.2f} m/s")
+            while self._due and self._due[0].time_s < tick.time_s:
+                self._tell(tick, push_words(self._due.pop(0)))
+            if wearer.fallen and not self._fallen:
+                self._fallen = True
+                self._tell(tick, "fell")
+
+        def _tell(self, tick: Any, words: str) -> None:
+            print(f"{tick.time_s:7.2f} s  {words}", flush=True)
+
+    return Events()
+
+
+def push_words(push: "Push") -> str:
+    return f"push of {push.impulse_n_s:g} N s to {push.direction_deg:g} degrees"
+
+
+def summary(wearer: "Wearer", exoskeleton: Any) -> str:
+    receiver = exoskeleton.reader.receiver
+    fell = f"fell at {wearer.fell_at_s:.2f} s" if wearer.fallen else "did not fall"
+    return (
+        f"walked {wearer.time_s:.1f} s, {wearer.com_m.real:.1f} m; {fell}; "
+        f"{exoskeleton.ticks} ticks, {exoskeleton.frames_sent} frames sent, "
+        f"{receiver.accepted} received, {receiver.rejected} rejected"
+    )

@@ -1,0 +1,296 @@
+"""The live node: an emulated wearer on the firmware's CAN bus and on LCM."""
+
+import math
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import can
+
+from saddlewalk.emulator import LEFT, RIGHT, STEP_S, Measurement, Plan, Wearer
+from saddlewalk.errors import UserError
+from saddlewalk.wire import Receiver, Sender
+
+TICK_S = 0.08  # of the firmware
+WAKE_UP_S = 0.01  # realtime: measurements at 100 Hz
+SILENCE_S = 3.0
+RESEND_S = 0.25
+
+MODE_STAND, MODE_WALK = 0, 1
+PLAN_MESSAGES = (
+    "PLAN_COM PLAN_COM_VELOCITY PLAN_LEFT PLAN_RIGHT PLAN_SWING PLAN_LANDING PLAN_ANKLE PLAN_STEP"
+).split()
+TICK_MESSAGES = {*PLAN_MESSAGES, "SCORES_STEP", "SCORES_MARGIN", "SCORES_FORCE", "HEALTH"}
+
+Messages = dict[str, dict[str, float]]
+
+
+@dataclass(frozen=True)
+class Command:
+    speed_m_s: float
+    heel_strike_rad: float
+
+
+@dataclass(frozen=True)
+class Tick:
+    """One tick of the firmware: its messages by name, and the time in the wearer's walk."""
+
+    time_s: float
+    messages: Messages
+    plan: Plan | None
+
+
+class Observer:
+    """Sees what goes on; the base class looks away."""
+
+    def frame(self, frame: can.Message) -> None:
+        """Every frame sent (is_rx False) and received (True)."""
+
+    def tick(self, tick: Tick, wearer: Wearer) -> None:
+        """After the firmware's tick has come and before the wearer moves on."""
+
+    def poll(self) -> None:
+        """At least once a tick: time to read other inputs."""
+
+
+def plan_of(messages: Messages) -> Plan | None:
+    """The plan of one tick; None while none is planned or a number of it is not available."""
+    step, swing, landing = messages["PLAN_STEP"], messages["PLAN_SWING"], messages["PLAN_LANDING"]
+    com, velocity = messages["PLAN_COM"], messages["PLAN_COM_VELOCITY"]
+    left, right = messages["PLAN_LEFT"], messages["PLAN_RIGHT"]
+    numbers = [value for part in PLAN_MESSAGES for value in messages[part].values()]
+    if not step["VALID"] or not all(map(math.isfinite, numbers)):
+        return None
+    return Plan(
+        support=int(step["SUPPORT"]),
+        step_count=int(step["STEP_COUNT"]),
+        step_length_m=step["STEP_LENGTH"],
+        speed_m_s=messages["PLAN_ANKLE"]["SPEED"],
+        com_m=complex(com["X"], com["Y"]),
+        velocity_m_s=complex(velocity["VX"], velocity["VY"]),
+        feet_m=(complex(left["X"], left["Y"]), complex(right["X"], right["Y"])),
+        foot_heights_m=(left["Z"], right["Z"]),
+        swing_velocity_m_s=swing["VX"],
+        swing_rise_m_s=swing["VZ"],
+        time_to_heel_strike_s=swing["TIME_TO_HEEL_STRIKE"],
+        landing_m=complex(landing["X"], landing["Y"]),
+        leg_length_m=landing["LEG_LENGTH"],
+    )
+
+
+class TickReader:
+    """Gathers the frames of a tick, of which HEALTH is the last."""
+
+    def __init__(self) -> None:
+        self.receiver = Receiver()
+        self._latest: Messages = {}
+
+    def feed(self, frame: can.Message) -> Messages | None:
+        """All messages of a tick once they have come; None before, and if one was lost."""
+        accepted = self.receiver.accept(frame)
+        if accepted is None:
+            return None
+        name, signals = accepted
+        self._latest[name] = signals
+        if name != "HEALTH":
+            return None
+        messages, self._latest = self._latest, {}
+        counters = {part["COUNTER"] for name, part in messages.items() if name in TICK_MESSAGES}
+        whole = messages.keys() >= TICK_MESSAGES and len(counters) == 1
+        return messages if whole else None
+
+
+class Exoskeleton:
+    """Sends the wearer's measurements, follows the plan that comes back, publishes the truth.
+
+    A walk in progress is ended before the own one is begun, because the firmware keeps the speed
+    with which a walk began.
+    """
+
+    def __init__(
+        self,
+        bus: can.BusABC,
+        wearer: Wearer,
+        command: Command,
+        lcm: Any = None,
+        observers: Iterable[Observer] = (),
+    ) -> None:
+        self.reader = TickReader()
+        self.frames_sent = 0
+        self.ticks = 0
+        self.health: dict[str, float] = {}  # the newest
+        self._bus, self._lcm, self._wearer, self._command = bus, lcm, wearer, command
+        self._observers = tuple(observers)
+        self._sender = Sender()
+        self._mode = MODE_STAND
+        self._pushed_n_s = 0j
+
+    def run(self, clock: str, duration_s: float) -> None:
+        """Walk for duration_s by the clock `realtime` or `lockstep`.
+
+        Raises UserError if the firmware is silent.
+        """
+        (self._run_lockstep if clock == "lockstep" else self._run_realtime)(duration_s)
+
+    def _run_lockstep(self, duration_s: float) -> None:
+        """As fast as the firmware answers: one set of measurements, one tick, 80 ms of physics."""
+        while self._wearer.time_s < duration_s - STEP_S / 2:
+            self._take(self._exchange())
+            self._advance(round(TICK_S / STEP_S))
+            self._publish_truth()
+            self._poll()
+        self._mode = MODE_STAND
+        self._send_command_frame()
+
+    def _run_realtime(self, duration_s: float) -> None:
+        """By the wall clock, on absolute deadlines."""
+        deadline_s = heard_s = time.monotonic()
+        wake_up = 0
+        while self._wearer.time_s < duration_s - STEP_S / 2:
+            if wake_up % round(TICK_S / WAKE_UP_S) == 0:
+                self._publish_command()
+            if self._receive():
+                heard_s = time.monotonic()
+            elif time.monotonic() - heard_s > SILENCE_S:
+                raise self._silent()
+            self._advance(round(WAKE_UP_S / STEP_S))
+            self._send_measurement()
+            self._publish_truth()
+            self._poll()
+            wake_up += 1
+            deadline_s += WAKE_UP_S
+            time.sleep(max(0.0, deadline_s - time.monotonic()))
+        self._mode = MODE_STAND
+        self._publish_command()
+
+    def _silent(self) -> UserError:
+        return UserError(
+            f"the firmware has been silent for {SILENCE_S:g} s on {self._bus.channel_info}: "
+            "start saddlewalk-host there with the same --clock and --lcm"
+        )
+
+    def _exchange(self) -> Messages:
+        """Send what is measured and wait for the firmware's tick.
+
+        Firmware that heard another wearer before refuses the first set, whose counters are new; so
+        until it has answered once, the set is sent again.
+        """
+        deadline_s = time.monotonic() + SILENCE_S
+        patience_s = SILENCE_S if self.ticks else RESEND_S
+        while time.monotonic() < deadline_s:
+            self._send_command_frame()
+            self._send_measurement()
+            messages = self._answer(patience_s)
+            if messages:
+                return messages
+        raise self._silent()
+
+    def _answer(self, patience_s: float) -> Messages | None:
+        deadline_s = time.monotonic() + patience_s
+        while (left_s := deadline_s - time.monotonic()) > 0:
+            frame = self._bus.recv(left_s)
+            messages = self._hear(frame) if frame else None
+            if messages:
+                return messages
+        return None
+
+    def _receive(self) -> bool:
+        """Take what has come; True if a whole tick was among it."""
+        ticked = False
+        while frame := self._bus.recv(0):
+            messages = self._hear(frame)
+            if messages:
+                self._take(messages)
+                ticked = True
+        return ticked
+
+    def _hear(self, frame: can.Message) -> Messages | None:
+        for observer in self._observers:
+            observer.frame(frame)
+        return self.reader.feed(frame)
+
+    def _take(self, messages: Messages) -> None:
+        plan = plan_of(messages)
+        if self._mode == MODE_STAND:
+            self._mode = MODE_WALK if plan is None else MODE_STAND
+            plan = None
+        self.ticks += 1
+        self.health = messages["HEALTH"]
+        self._wearer.follow(plan)
+        tick = Tick(self._wearer.time_s, messages, plan)
+        for observer in self._observers:
+            observer.tick(tick, self._wearer)
+
+    def _advance(self, steps: int) -> None:
+        for _ in range(steps):
+            self._wearer.step()
+
+    def _poll(self) -> None:
+        for observer in self._observers:
+            observer.poll()
+
+    def _send(self, name: str, **signals: float) -> None:
+        frame = self._sender.frame(name, **signals)
+        frame.is_rx, frame.timestamp = False, time.time()
+        try:
+            self._bus.send(frame)
+        except can.CanOperationError:  # no room: lost, as the firmware sees by its age
+            return
+        self.frames_sent += 1
+        for observer in self._observers:
+            observer.frame(frame)
+
+    def _send_command_frame(self) -> None:
+        self._send(
+            "COMMAND",
+            MODE=self._mode,
+            SPEED=self._command.speed_m_s,
+            HEEL_STRIKE=self._command.heel_strike_rad,
+        )
+
+    def _send_measurement(self) -> None:
+        measured: Measurement = self._wearer.measure()
+        velocity = measured.velocity_m_s
+        self._send("MEASURED_COM", HEIGHT=measured.height_m, VX=velocity.real, VY=velocity.imag)
+        for side, name in ((LEFT, "MEASURED_LEFT"), (RIGHT, "MEASURED_RIGHT")):
+            foot = measured.feet_m[side]
+            self._send(name, CONTACT=measured.contact[side], X=foot.real, Y=foot.imag)
+
+    def _publish_command(self) -> None:
+        from saddlewalk.lcm_types import command_t
+
+        message = command_t()
+        message.utime_us = time.time_ns() // 1000
+        message.mode = self._mode
+        message.speed_m_s = self._command.speed_m_s
+        message.heel_strike_rad = self._command.heel_strike_rad
+        self._lcm.publish("SADDLEWALK_COMMAND", message.encode())
+
+    def _publish_truth(self) -> None:
+        if self._lcm is None:
+            return
+        message = truth_message(self._wearer, self._wearer.pushed_n_s - self._pushed_n_s)
+        self._pushed_n_s = self._wearer.pushed_n_s
+        self._lcm.publish("SADDLEWALK_TRUTH", message.encode())
+
+
+def truth_message(wearer: Wearer, push_n_s: complex) -> Any:
+    """The wearer as a truth_t."""
+    from saddlewalk.lcm_types import truth_t
+
+    def point(plane: complex, height: float) -> list[float]:
+        return [plane.real, plane.imag, height]
+
+    left, right = wearer.feet
+    message = truth_t()
+    message.utime_us = time.time_ns() // 1000
+    message.com_m = point(wearer.com_m, wearer.height_m)
+    message.com_velocity_m_s = point(wearer.velocity_m_s, wearer.rise_m_s)
+    message.left_m = point(left.position_m, left.height_m)
+    message.right_m = point(right.position_m, right.height_m)
+    message.cop_m = [wearer.cop_m.real, wearer.cop_m.imag]
+    message.push_n_s = [push_n_s.real, push_n_s.imag]
+    message.left_contact, message.right_contact = left.contact, right.contact
+    message.fallen = wearer.fallen
+    return message

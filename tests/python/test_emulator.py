@@ -1,0 +1,287 @@
+"""The emulated wearer: its physics, that it can fall, and that it walks as people do."""
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+
+from saddlewalk.cli import main
+from saddlewalk.core import Command, Core, ffi, library
+from saddlewalk.emulator import LEFT, RIGHT, STEP_S, Body, Noise, Plan, Push, SteadyStep, Wearer
+
+TICK_US = 80_000
+TICK_STEPS = 80
+STEADY = Noise(0.0, 0.0, 0.0)
+
+
+class Planner:
+    """The C core, asked for its plan every 80 ms."""
+
+    def __init__(self, speed_m_s: float) -> None:
+        config = ffi().new("saddle_config_t *")
+        config[0] = library().saddle_config_default(1.79, 63.3)
+        from saddlewalk.core import Measurement
+
+        self._core, self._nobody = Core(config), Measurement()
+        self._command = Command(speed_m_s, math.radians(10))
+        self._ticks = 0
+
+    def next(self) -> Plan:
+        plan = self._core.tick(self._ticks * TICK_US, self._command, self._nobody).plan
+        self._ticks += 1
+        feet = plan.foot_m
+        return Plan(
+            support=plan.support,
+            step_count=plan.step_count % 65536,
+            step_length_m=plan.step_length_m,
+            speed_m_s=plan.speed_m_s,
+            com_m=complex(plan.com_m.x, plan.com_m.y),
+            velocity_m_s=complex(plan.com_velocity_m_s.x, plan.com_velocity_m_s.y),
+            feet_m=(complex(feet[0].x, feet[0].y), complex(feet[1].x, feet[1].y)),
+            foot_heights_m=(feet[0].z, feet[1].z),
+            swing_velocity_m_s=plan.swing_velocity_m_s.x,
+            swing_rise_m_s=plan.swing_velocity_m_s.z,
+            time_to_heel_strike_s=plan.time_to_heel_strike_s,
+            landing_m=complex(plan.landing_m.x, plan.landing_m.y),
+            leg_length_m=plan.leg_length_m,
+        )
+
+
+def walk(wearer: Wearer, speed_m_s: float, duration_s: float, watch=None) -> Wearer:
+    """Lead the wearer through a walk; watch(plan, steps since that plan) after every step."""
+    planner = Planner(speed_m_s)
+    for step in range(round(duration_s / STEP_S)):
+        if step % TICK_STEPS == 0:
+            plan = planner.next()
+            wearer.follow(plan)
+        wearer.step()
+        if watch:
+            watch(plan, step % TICK_STEPS + 1)
+    return wearer
+
+
+def state(wearer: Wearer) -> tuple:
+    feet = [(foot.position_m, foot.height_m, foot.contact) for foot in wearer.feet]
+    return wearer.com_m, wearer.velocity_m_s, wearer.height_m, wearer.cop_m, feet
+
+
+def test_com_is_a_pendulum_about_a_fixed_cop():
+    # A CoP at the toes that is asked to go further forward stays there.
+    wearer = Wearer(noise=STEADY)
+    wearer.cop_m, wearer.com_m, wearer.velocity_m_s = 0.1 + 0j, 0.11 + 0j, 0.4 + 0j
+    w = wearer.body.natural_frequency_rad_s
+    for step in range(1, 301):
+        wearer.step()
+        assert wearer.cop_m == 0.1
+        t = step * STEP_S
+        com = 0.1 + 0.01 * math.cosh(w * t) + 0.4 / w * math.sinh(w * t)
+        velocity = 0.01 * w * math.sinh(w * t) + 0.4 * math.cosh(w * t)
+        # 300 roundings of numbers below 1.
+        assert wearer.com_m.real == pytest.approx(com, abs=1e-13)
+        assert wearer.velocity_m_s.real == pytest.approx(velocity, abs=1e-13)
+
+
+def test_pendulum_energy_is_kept_while_the_cop_is_fixed():
+    wearer = Wearer(noise=STEADY)
+    wearer.cop_m, wearer.com_m, wearer.velocity_m_s = 0.1 + 0j, 0.11 + 0j, 0.4 + 0j
+    w = wearer.body.natural_frequency_rad_s
+
+    def energy() -> float:
+        return abs(wearer.velocity_m_s) ** 2 - (w * abs(wearer.com_m - wearer.cop_m)) ** 2
+
+    before = energy()
+    for _ in range(300):
+        wearer.step()
+    assert energy() == pytest.approx(before, abs=1e-12)
+
+
+@pytest.mark.parametrize(("step_m", "width_m", "step_s"), [(0.45, 0.22, 0.9), (0.85, 0.1, 0.53)])
+def test_steady_step_is_a_pendulum_and_its_own_mirror_image(step_m, width_m, step_s):
+    steady = SteadyStep(Body(), step_m, width_m, step_s)
+    w = Body().natural_frequency_rad_s
+    (cop_0, xcom_0), (cop_1, xcom_1) = steady.at(0.0), steady.at(step_s)
+    assert cmath.isclose((xcom_1 - step_m).conjugate(), xcom_0, abs_tol=1e-12)
+    assert cmath.isclose((cop_1 - step_m).conjugate(), cop_0, abs_tol=1e-12)
+    h = 1e-5
+    for time_s in np.linspace(2 * h, step_s - 2 * h, 50):
+        if abs(time_s - Body().double_support * step_s) < 2 * h:
+            continue  # the CoP changes its pace
+        cop, xcom = steady.at(time_s)
+        rate = (steady.at(time_s + h)[1] - steady.at(time_s - h)[1]) / (2 * h)
+        # Central difference: h^2 w^3 / 6, and 1e-16 / h of rounding.
+        assert abs(rate - w * (xcom - cop)) < 1e-8
+
+
+def test_same_seed_same_bits_and_another_seed_others():
+    def run(seed: int) -> tuple:
+        wearer = walk(Wearer(pushes=(Push(10, 2.0, 90),), seed=seed), 1.2, 4.0)
+        return *state(wearer), wearer.measure()
+
+    assert run(1) == run(1)
+    assert run(1) != run(2)
+
+
+@pytest.mark.parametrize("speed_m_s", [0.5, 1.2])
+def test_a_foot_on_the_ground_never_moves(speed_m_s):
+    wearer = Wearer(pushes=(Push(8, 2.0, 90),))
+    stood: dict[int, complex] = {}
+    landings = 0
+
+    def watch(*_):
+        nonlocal landings
+        for side, foot in enumerate(wearer.feet):
+            if not foot.contact:
+                stood.pop(side, None)
+            elif side in stood:
+                assert foot.position_m == stood[side] and foot.height_m == 0.0
+            else:
+                stood[side] = foot.position_m
+                landings += 1
+
+    walk(wearer, speed_m_s, 8.0, watch)
+    assert landings >= 8
+
+
+def distance_outside_support(wearer: Wearer) -> float:
+    """Of the CoP from the hull of the soles on the ground: the middles' segment, widened."""
+    sole = wearer.body.foot_half_length_m, wearer.body.foot_half_width_m
+    middles = [foot.position_m for foot in wearer.feet if foot.contact]
+    shares = np.linspace(0, 1, 2001)
+    along = middles[0] + shares * (middles[-1] - middles[0])
+    offset = wearer.cop_m - along
+    outside = np.maximum(np.abs(offset.real) - sole[0], np.abs(offset.imag) - sole[1])
+    return float(outside.min())
+
+
+@pytest.mark.parametrize("direction_deg", [0, 90, 200])
+def test_cop_stays_within_the_feet_on_the_ground(direction_deg):
+    wearer = Wearer(pushes=(Push(20, 1.5, direction_deg),))
+    worst = []
+    walk(wearer, 1.2, 4.0, lambda *_: worst.append(distance_outside_support(wearer)))
+    # The segment is sampled every 0.35 mm along x.
+    assert max(worst) < 2e-4
+
+
+def test_push_gives_its_impulse_and_no_more():
+    pushed = Wearer(noise=STEADY, pushes=(Push(3.0, 0.0, 90),))
+    walk(pushed, 1.2, 0.2)
+    assert pushed.pushed_n_s == pytest.approx(3j, abs=1e-12)
+
+
+@pytest.mark.parametrize("speed_m_s", [0.8, 1.2, 1.6])
+@pytest.mark.parametrize(
+    ("push", "falls"),
+    [
+        (Push(20, 4.0, 0), False),
+        (Push(20, 4.0, 180), False),
+        (Push(5, 4.0, 90), False),
+        (Push(60, 4.0, 90), True),
+        (Push(60, 4.0, 270), True),
+        (Push(120, 4.0, 0), True),
+    ],
+)
+def test_small_pushes_are_survived_and_large_ones_are_not(speed_m_s, push, falls):
+    wearer = walk(Wearer(pushes=(push,)), speed_m_s, 9.0)
+    assert wearer.fallen == falls
+
+
+def test_a_fall_is_for_good_and_low():
+    wearer = walk(Wearer(pushes=(Push(80, 1.0, 90),)), 1.2, 4.0)
+    assert wearer.fallen and wearer.velocity_m_s == 0
+    before = state(wearer)
+    nearest = min(abs(wearer.com_m - foot.position_m) for foot in wearer.feet if foot.contact)
+    lowest = wearer.body.fall_height * wearer.body.pendulum_m
+    assert math.hypot(nearest, lowest) > wearer.body.pendulum_m
+    walk(wearer, 1.2, 1.0)
+    assert wearer.fallen and state(wearer) == before
+
+
+@pytest.mark.parametrize("speed_m_s", [0.5, 0.8, 1.2, 1.6])
+def test_walks_for_minutes_without_falling(speed_m_s):
+    planned = Planner(speed_m_s).next()
+    wearer = walk(Wearer(seed=3), speed_m_s, 120.0)
+    assert not wearer.fallen
+    assert wearer.com_m.real == pytest.approx(planned.speed_m_s * 120.0, abs=0.2)
+    assert abs(wearer.com_m.imag) < 0.2
+
+
+# 75 recorded adults, medians: the AP speed has a standard deviation of 0.12 m/s within a stride,
+# and the XCoM leaves the constant-speed plan by 0.070 m AP and 0.026 m ML at the 95th percentile,
+# by 0.12 and 0.067 m in the largest trial. A CoP under one foot alone would give 0.15 to 0.25 m/s.
+@pytest.mark.parametrize("speed_m_s", [0.5, 0.8, 1.0, 1.2, 1.4, 1.6])
+def test_unperturbed_walk_varies_as_that_of_people(speed_m_s):
+    wearer = Wearer(seed=1)
+    w = wearer.body.natural_frequency_rad_s
+    speeds, errors, turns = [], [], []
+
+    def watch(plan: Plan, steps: int) -> None:
+        age = steps * STEP_S
+        omega = math.pi / plan.step_s
+        turn, sine = math.cos(omega * age), math.sin(omega * age)
+        y = plan.com_m.imag * turn + plan.velocity_m_s.imag / omega * sine
+        vy = plan.velocity_m_s.imag * turn - plan.com_m.imag * omega * sine
+        x = wearer.origin_m + plan.com_m.real + plan.speed_m_s * age
+        errors.append(wearer.xcom_m - complex(x + plan.speed_m_s / w, y + vy / w))
+        speeds.append(wearer.velocity_m_s.real)
+        turns.append(plan.step_s)
+
+    walk(wearer, speed_m_s, 30.0, watch)
+    settled = 5000
+    stride = round(2 * turns[0] / STEP_S)
+    strides = (len(speeds) - settled) // stride
+    table = np.array(speeds[settled : settled + strides * stride]).reshape(strides, stride)
+    error = np.array(errors[settled:])
+    assert 0.08 <= np.median(table.std(axis=1)) <= 0.15
+    assert 0.04 <= np.percentile(np.abs(error.real), 95) <= 0.09
+    assert 0.01 <= np.percentile(np.abs(error.imag), 95) <= 0.05
+    assert np.abs(error.real).max() <= 0.12
+    assert np.abs(error.imag).max() <= 0.067
+
+
+def test_measurements_are_noisy_as_said():
+    wearer = Wearer(noise=Noise(position_m=0.002, velocity_m_s=0.02))
+    seen = [wearer.measure() for _ in range(2000)]
+    heights = np.array([m.height_m for m in seen])
+    velocities = np.array([m.velocity_m_s for m in seen])
+    # The standard deviation of 2000 draws is known within 5 % (3 sigma).
+    assert heights.std() == pytest.approx(0.002, rel=0.05)
+    assert velocities.real.std() == pytest.approx(0.02, rel=0.05)
+    assert heights.mean() == pytest.approx(wearer.height_m, abs=0.002 * 4 / math.sqrt(2000))
+
+
+def test_a_lost_plan_ends_the_walk_and_the_wearer_puts_both_feet_down():
+    wearer = walk(Wearer(), 0.5, 3.0)
+    for _ in range(round((Wearer.PLAN_MAX_AGE_S + 0.1) / STEP_S)):
+        wearer.step()
+    assert wearer.feet[LEFT].contact and wearer.feet[RIGHT].contact
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (["--push", "20"], "20"),
+        (["--push", "20@8"], "20@8"),
+        (["--push", "x@8:90"], "x@8:90"),
+        (["--push", "nan@8:90"], "nan@8:90"),
+        (["--push", "20@-1:90"], "20@-1:90"),
+        (["--push", "1e9@1:90"], "1e9@1:90"),
+        (["--speed", "0"], "0"),
+        (["--speed", "nan"], "nan"),
+        (["--hs-angle", "91"], "91"),
+        (["--duration", "0"], "0"),
+        (["--noise-scale", "-1"], "-1"),
+        (["--seed", "-1"], "-1"),
+        (["--clock", "sundial"], "sundial"),
+        (["--can", "pigeon"], "pigeon"),
+    ],
+)
+@pytest.mark.parametrize("command", ["emulate"])
+def test_a_bad_option_is_one_line_that_names_it(command, options, named, capsys):
+    try:
+        status = main([command, *options])
+    except SystemExit as end:
+        status = end.code
+    told = capsys.readouterr()
+    assert status == 2
+    assert told.err.count("\n") == 1 and named in told.err and options[0].strip("-") in told.err
