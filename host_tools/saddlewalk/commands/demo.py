@@ -1,0 +1,163 @@
+"""`saddlewalk demo`: firmware and wearer walk together; live scores, a picture and logs."""
+
+import argparse
+import contextlib
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from saddlewalk.commands.emulate import (
+    add_walk_options,
+    command_of,
+    events_printer,
+    push_text,
+    summary,
+    wearer_of,
+)
+from saddlewalk.errors import UserError
+
+if TYPE_CHECKING:
+    from saddlewalk.emulator import Wearer
+    from saddlewalk.exoskeleton import Exoskeleton
+    from saddlewalk.recorder import Recorder
+
+PUSH = "8@8:90"
+REFRESH_S = 0.2
+LINE_S = 2.0
+LISTEN_S = 0.25
+LATE_SHARE_MAX = 0.05
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser("demo", help="firmware and wearer walk; picture and logs")
+    parser.add_argument("--out", type=Path, default=Path("out/demo"), metavar="FOLDER")
+    add_walk_options(parser, clock="realtime", pushes=(PUSH,))
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    from saddlewalk import private_network
+    from saddlewalk.bus import describe, open_bus
+    from saddlewalk.host import running_host
+    from saddlewalk.lcmbus import open_lcm
+
+    args.push = args.push or [push_text(PUSH)]
+    try:
+        lcm = open_lcm(args.lcm)
+    except UserError:
+        if args.lcm or not private_network.possible():
+            raise
+        print("no multicast route: running in a private network of its own", flush=True)
+        private_network.enter()
+    from saddlewalk.recorder import Recorder
+
+    options = [f"--can={args.can}", f"--clock={args.clock}"]
+    options += [f"--lcm={args.lcm}"] if args.lcm else []
+    with open_bus(args.can) as bus, Recorder(args.out, lcm) as recorder:
+        _refuse_company(bus, recorder)
+        print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
+        with running_host(*options):
+            wearer, exoskeleton = _walk(args, bus, lcm, recorder)
+    return _finish(args.out, wearer, exoskeleton, recorder)
+
+
+def _refuse_company(bus: Any, recorder: "Recorder") -> None:
+    """Another walk on the same bus would be mixed into this one."""
+    if bus.recv(LISTEN_S) is not None:
+        raise UserError(
+            f"{bus.channel_info} is busy with another walk: end it, or give other --can and --lcm"
+        )
+    recorder.poll()
+    if recorder.lcm_messages:
+        raise UserError("LCM carries another walk already: end it, or give other --can and --lcm")
+
+
+def _walk(
+    args: argparse.Namespace, bus: Any, lcm: Any, recorder: "Recorder"
+) -> "tuple[Wearer, Exoskeleton]":
+    from saddlewalk.emulator import Noise
+    from saddlewalk.exoskeleton import Exoskeleton
+
+    wearer = wearer_of(args, Noise())
+    with _display(lcm) as display:
+        observers = [recorder, events_printer(wearer), display]
+        exoskeleton = Exoskeleton(bus, wearer, command_of(args), lcm, observers)
+        exoskeleton.run(args.clock, args.duration)
+    return wearer, exoskeleton
+
+
+@contextlib.contextmanager
+def _display(lcm: Any) -> Iterator[Any]:
+    """An observer that shows what the firmware publishes: a live panel, or a line now and then."""
+    from rich.live import Live
+
+    from saddlewalk.commands.monitor import Listener
+    from saddlewalk.exoskeleton import Observer
+
+    listener = Listener()
+    listener.subscribe(lcm)
+    on_terminal = sys.stdout.isatty()
+    live = Live(listener.panel(), auto_refresh=False) if on_terminal else None
+
+    class Display(Observer):
+        due_s = time.monotonic()
+
+        def poll(self) -> None:
+            if time.monotonic() < self.due_s:
+                return
+            if live:
+                live.update(listener.panel(), refresh=True)
+            elif listener.complete:
+                print(listener.line(), flush=True)
+            self.due_s = time.monotonic() + (REFRESH_S if live else LINE_S)
+
+    with live or contextlib.nullcontext():
+        yield Display()
+
+
+def _finish(
+    folder: Path, wearer: "Wearer", exoskeleton: "Exoskeleton", recorder: "Recorder"
+) -> int:
+    """Draw the picture, read everything again, tell; 0 only if the walk was sound."""
+    from saddlewalk.pictures import draw_walk
+
+    picture = folder / "walk.png"
+    draw_walk(recorder.csv_path, picture, wearer.pushes)
+    checks = _checks(wearer, exoskeleton, recorder)
+    print(summary(wearer, exoskeleton))
+    for good, words in checks:
+        print(f"  {'ok ' if good else 'BAD'}  {words}")
+    for path in (picture, recorder.csv_path, recorder.can_path, recorder.lcm_path):
+        print(f"  {path}  {path.stat().st_size / 1024:.0f} KiB")
+    return 0 if all(good for good, _ in checks) else 1
+
+
+def _checks(
+    wearer: "Wearer", exoskeleton: "Exoskeleton", recorder: "Recorder"
+) -> list[tuple[bool, str]]:
+    from saddlewalk.recorder import CHANNELS, read_can_log, read_lcm_log
+
+    health = exoskeleton.health
+    late, refused = int(health["LATE_TICKS"]), int(health["REJECTED_FRAMES"])
+    rejected = exoskeleton.reader.receiver.rejected
+    ticks = exoskeleton.ticks
+    frames = read_can_log(recorder.can_path)
+    channels = read_lcm_log(recorder.lcm_path)
+    missing = [name for name in CHANNELS if not channels[name]]
+    return [
+        (not wearer.fallen, "the wearer stayed up" if not wearer.fallen else "the wearer fell"),
+        (
+            rejected == refused == 0,
+            f"{rejected} frames refused by the wearer, {refused} by firmware",
+        ),
+        (late <= LATE_SHARE_MAX * ticks, f"{late} of {ticks} ticks late"),
+        (recorder.rows == ticks > 0, f"{recorder.rows} rows of CSV"),
+        (frames == recorder.frames > 0, f"{frames} CAN frames read again"),
+        (
+            sum(channels.values()) == recorder.lcm_messages and not missing,
+            f"{sum(channels.values())} LCM messages read again"
+            + (f", none on {', '.join(missing)}" if missing else ""),
+        ),
+    ]

@@ -1,0 +1,148 @@
+"""The picture of a recorded walk: from above, the CoM's height, the scores."""
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse, Polygon
+
+from saddlewalk.core import ffi, library
+from saddlewalk.emulator import Body, Push
+from saddlewalk.lcm_types import bos_t
+
+matplotlib.use("Agg")
+
+# Okabe and Ito's colours, which the colour-blind can tell apart; line styles differ as well.
+BLUE, SKY, GREEN, ORANGE, RED, PINK = "#0072B2 #56B4E9 #009E73 #E69F00 #D55E00 #CC79A7".split()
+BEFORE_S, AFTER_S = 1.2, 3.0  # the part of the walk shown closely, about the first push
+FOOT_M = (0.26, 0.09)
+FEET = (("left", GREEN), ("right", RED))
+
+Columns = dict[str, np.ndarray]
+
+
+def read_walk(path: Path) -> Columns:
+    """The numbers of walk.csv by column: NaN where a cell is empty, support 0 left and 1 right."""
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    codes = {"left": "0", "right": "1"}
+    return {
+        name: np.array([float(codes.get(row[name], row[name]) or "nan") for row in rows])
+        for name in rows[0]
+        if name not in ("faults", "limits")
+    }
+
+
+def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push]) -> None:
+    """Draw walk.csv, whole or as far as it goes."""
+    walk = read_walk(csv_path)
+    figure = Figure(figsize=(13, 10), dpi=110, layout="constrained")
+    above, height, scores, margins = figure.subplots(4, 1, height_ratios=(1.7, 1, 1, 1))
+    shown = _shown(walk["time_s"], pushes)
+    closely = {name: column[shown] for name, column in walk.items()}
+    speed = np.nanmedian(walk["plan_speed_m_s"])
+    figure.suptitle(f"Walking at {speed:.2f} m/s: the plan, and the wearer who follows it")
+    _draw_above(above, closely, pushes)
+    _draw_height(height, closely)
+    _draw_lines(scores, walk, (("s_pend", "S_pend"), ("s_jump", "S_jump"), ("s_sw", "S_SW")))
+    scores.set(ylabel="stability score\n(1 reference, 0 limit)")
+    _draw_lines(margins, walk, (("mos_com_m", "CoM"), ("mos_xcom_m", "XCoM")))
+    margins.set(ylabel="margin in the base\nof support (m)", xlabel="time (s)")
+    for axes in (height, scores, margins):
+        _mark(axes, pushes)
+    for axes in (scores, margins):
+        axes.axvspan(*closely["time_s"][[0, -1]], color="0.94", zorder=0)
+    figure.savefig(png_path)
+
+
+def _shown(time_s: np.ndarray, pushes: Sequence[Push]) -> np.ndarray:
+    centre_s = pushes[0].time_s if pushes else (time_s[-1] + BEFORE_S - AFTER_S) / 2
+    shown = (time_s >= centre_s - BEFORE_S) & (time_s <= centre_s + AFTER_S)
+    return shown if shown.any() else np.ones_like(shown)
+
+
+def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push]) -> None:
+    for index in range(len(walk["time_s"])):
+        axes.add_patch(Polygon(_bos(walk, index), color=SKY, alpha=0.10, lw=0))
+        axes.add_patch(Polygon(_bos(walk, index), fill=False, ec=SKY, alpha=0.35, lw=0.5))
+    for index, (side, colour) in enumerate(FEET):
+        planned = walk["support"] == index
+        _draw_feet(axes, walk, planned, side, colour)
+    axes.plot([], [], color=SKY, lw=8, alpha=0.4, label="base of support")
+    axes.plot(walk["plan_com_x_m"], walk["plan_com_y_m"], "k--", lw=1.2, label="CoM, planned")
+    axes.plot(walk["true_com_x_m"], walk["true_com_y_m"], color=BLUE, lw=2.2, label="CoM")
+    for push in pushes:
+        _draw_push(axes, walk, push)
+    axes.set_aspect("equal")
+    axes.set(xlabel="forward (m)", ylabel="to the left (m)")
+    axes.set_xlim(walk["true_com_x_m"].min() - 0.2, walk["true_com_x_m"].max() + 0.2)
+    lateral = np.concatenate([walk[f"true_{side}_y_m"] for side, _ in FEET])
+    axes.set_ylim(min(lateral.min() - 0.15, -0.5), max(lateral.max() + 0.15, 0.5))
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False)
+
+
+def _bos(walk: Columns, index: int) -> np.ndarray:
+    """Base of support of the true feet, from the C core."""
+    cops = ffi().new("saddle_vec2_t[2]")
+    for cop, (side, _) in zip(cops, FEET, strict=True):
+        cop.x, cop.y = walk[f"true_{side}_x_m"][index], walk[f"true_{side}_y_m"][index]
+    bos = ffi().new("saddle_bos_t *")
+    bos[0] = library().saddle_bos(cops, Body().foot_half_length_m)
+    vertices = ffi().new("saddle_vec2_t[]", bos_t.VERTICES)
+    library().saddle_bos_polygon(bos, vertices)
+    return np.array([(vertex.x, vertex.y) for vertex in vertices])
+
+
+def _draw_feet(axes: Axes, walk: Columns, planned: np.ndarray, side: str, colour: str) -> None:
+    """Footprints where the foot stood, full, and where it was planned to stand, outlined."""
+    stood = walk[f"{side}_contact"] > 0
+    for prefix, there, style in (
+        ("true", stood, {"color": colour, "alpha": 0.55, "lw": 0}),
+        ("plan", planned, {"fill": False, "ec": "black", "ls": "--", "lw": 0.8}),
+    ):
+        places = np.column_stack([walk[f"{prefix}_{side}_x_m"], walk[f"{prefix}_{side}_y_m"]])
+        for place in np.unique(places[there].round(3), axis=0):
+            axes.add_patch(Ellipse(place, *FOOT_M, **style))
+    axes.plot([], [], "o", color=colour, alpha=0.55, ms=9, label=f"{side} foot")
+
+
+def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
+    index = int(np.argmin(np.abs(walk["time_s"] - push.time_s)))
+    at = complex(walk["true_com_x_m"][index], walk["true_com_y_m"][index])
+    tail = at - 0.4 * push.vector_n_s / abs(push.vector_n_s)
+    axes.annotate(
+        f"push\n{push.impulse_n_s:g} N·s",
+        xy=(at.real, at.imag),
+        xytext=(tail.real, tail.imag),
+        arrowprops={"arrowstyle": "-|>", "color": PINK, "lw": 3},
+        color=PINK,
+        ha="center",
+        va="center",
+        weight="bold",
+    )
+
+
+def _draw_height(axes: Axes, walk: Columns) -> None:
+    axes.plot(walk["time_s"], walk["plan_com_z_m"], "k--o", ms=3, lw=1.0, label="planned")
+    axes.plot(walk["time_s"], walk["true_com_z_m"], "-o", color=BLUE, ms=3, lw=1.6, label="true")
+    axes.set(ylabel="height of\nthe CoM (m)")
+    axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
+
+
+def _draw_lines(axes: Axes, walk: Columns, names: Sequence[tuple[str, str]]) -> None:
+    styles = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."))
+    for (name, label), (colour, style) in zip(names, styles, strict=False):
+        axes.plot(walk["time_s"], walk[name], color=colour, ls=style, lw=1.6, label=label)
+    axes.axhline(0, color="0.4", lw=0.8)
+    axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
+
+
+def _mark(axes: Axes, pushes: Sequence[Push]) -> None:
+    for push in pushes:
+        axes.axvline(push.time_s, color=PINK, lw=2.5, zorder=1)
+    axes.grid(alpha=0.25)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)

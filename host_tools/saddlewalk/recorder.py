@@ -1,0 +1,136 @@
+"""A walk on disk: the LCM event log, every CAN frame, and a CSV row a tick.
+
+Each file is written as the walk goes on and closed whatever happens, so that what was recorded
+before a failure stays.
+"""
+
+import csv
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Self
+
+import can
+import lcm
+
+from saddlewalk.emulator import Wearer
+from saddlewalk.errors import UserError
+from saddlewalk.exoskeleton import Observer, Tick
+from saddlewalk.table import Cell, format_cell
+
+LCM_CHANNELS = "SADDLEWALK_.*"
+LCM_QUEUE = 2000
+CHANNELS = tuple(f"SADDLEWALK_{part}" for part in ("PLAN", "SCORES", "BOS", "HEALTH", "TRUTH"))
+
+_POINTS = "com_x_m com_y_m com_z_m left_x_m left_y_m left_z_m right_x_m right_y_m right_z_m".split()
+COLUMNS = (
+    "time_s step_count phase theta_turn support".split()
+    + [f"plan_{name}" for name in _POINTS]
+    + "plan_speed_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m v_comp_m_s".split()
+    + "gravity_x_n gravity_y_n faults limits".split()
+    + [f"true_{name}" for name in _POINTS]
+    + "true_com_vx_m_s true_com_vy_m_s true_cop_x_m true_cop_y_m left_contact right_contact".split()
+    + "pushed_x_n_s pushed_y_n_s fallen".split()
+)
+
+
+class Recorder(Observer):
+    """Writes walk.lcmlog, walk.candump.log and walk.csv into a folder while it is open."""
+
+    def __init__(self, folder: Path, bus: lcm.LCM) -> None:
+        self.lcm_path = folder / "walk.lcmlog"
+        self.can_path = folder / "walk.candump.log"
+        self.csv_path = folder / "walk.csv"
+        self.frames = self.rows = self.lcm_messages = 0
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._csv_file = self.csv_path.open("w", newline="", buffering=1)
+            self._can_log = can.CanutilsLogWriter(self.can_path, channel="saddlewalk")
+            self._lcm_log = lcm.EventLog(str(self.lcm_path), "w", overwrite=True)
+        except OSError as error:
+            raise UserError(f"--out {folder}: {error.strerror}") from error
+        self._csv = csv.writer(self._csv_file, lineterminator="\n")
+        self._csv.writerow(COLUMNS)
+        self._bus = bus
+        self._subscription = bus.subscribe(LCM_CHANNELS, self._lcm_message)
+        self._subscription.set_queue_capacity(LCM_QUEUE)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.poll(patience_ms=200)
+        self._bus.unsubscribe(self._subscription)
+        self._lcm_log.close()
+        self._can_log.stop()
+        self._csv_file.close()
+
+    def frame(self, frame: can.Message) -> None:
+        self._can_log.on_message_received(frame)
+        self.frames += 1
+
+    def tick(self, tick: Tick, wearer: Wearer) -> None:
+        self._csv.writerow(format_cell(cell) for cell in row(tick, wearer))
+        self.rows += 1
+
+    def poll(self, patience_ms: int = 0) -> None:
+        while self._bus.handle_timeout(patience_ms):
+            pass
+
+    def _lcm_message(self, channel: str, data: bytes) -> None:
+        self._lcm_log.write_event(time.time_ns() // 1000, channel, data)
+        self.lcm_messages += 1
+
+
+def row(tick: Tick, wearer: Wearer) -> list[Cell]:
+    """One line of walk.csv, world frame, in the order of COLUMNS; no plan: empty cells."""
+    scores, margin = tick.messages["SCORES_STEP"], tick.messages["SCORES_MARGIN"]
+    force, health = tick.messages["SCORES_FORCE"], tick.messages["HEALTH"]
+    left, right = wearer.feet
+    return [
+        tick.time_s,
+        *_planned(tick, wearer.origin_m),
+        *(scores[name] for name in ("S_PEND", "S_JUMP", "S_SW")),
+        *(margin[name] for name in ("MOS_COM", "MOS_XCOM", "V_COMP")),
+        *(force[name] for name in ("GRAVITY_X", "GRAVITY_Y")),
+        f"0x{int(force['FAULTS']):04x}",
+        f"0x{int(health['LIMITS']):02x}",
+        *(wearer.com_m.real, wearer.com_m.imag, wearer.height_m),
+        *(left.position_m.real, left.position_m.imag, left.height_m),
+        *(right.position_m.real, right.position_m.imag, right.height_m),
+        *(wearer.velocity_m_s.real, wearer.velocity_m_s.imag),
+        *(wearer.cop_m.real, wearer.cop_m.imag),
+        *(int(left.contact), int(right.contact)),
+        *(wearer.pushed_n_s.real, wearer.pushed_n_s.imag),
+        int(wearer.fallen),
+    ]
+
+
+def _planned(tick: Tick, origin_m: float) -> list[Cell]:
+    if tick.plan is None:
+        return [None] * (COLUMNS.index("plan_speed_m_s"))
+    step = tick.messages["PLAN_STEP"]
+    points = [tick.messages[name] for name in ("PLAN_COM", "PLAN_LEFT", "PLAN_RIGHT")]
+    return [
+        int(step["STEP_COUNT"]),
+        int(step["PHASE"]),
+        step["THETA"],
+        "right" if step["SUPPORT"] else "left",
+        *(value for p in points for value in (origin_m + p["X"], p["Y"], p["Z"])),
+        tick.plan.speed_m_s,
+    ]
+
+
+def read_can_log(path: Path) -> int:
+    """How many frames a candump log holds."""
+    with can.CanutilsLogReader(path) as log:
+        return sum(1 for _ in log)
+
+
+def read_lcm_log(path: Path) -> Counter[str]:
+    """How many messages an LCM event log holds on each channel."""
+    log = lcm.EventLog(str(path), "r")
+    try:
+        return Counter(event.channel for event in log)
+    finally:
+        log.close()

@@ -1,0 +1,170 @@
+"""`saddlewalk demo` and `emulate` end to end, with the real firmware process on private ports."""
+
+import csv
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import can
+import lcm
+import pytest
+
+from saddlewalk.cli import main
+from saddlewalk.emulator import STEP_S
+from saddlewalk.exoskeleton import TICK_S
+from saddlewalk.playback import private_udp
+from saddlewalk.recorder import CHANNELS, COLUMNS
+
+FILES = {"walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"}
+
+
+@pytest.fixture
+def ports() -> list[str]:
+    """--can and --lcm that no other walk uses."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("", 0))
+        port = probe.getsockname()[1]
+    return ["--can", private_udp(), "--lcm", f"udpm://239.255.76.67:{port}?ttl=0"]
+
+
+def demo(folder: Path, ports: list[str], *options: str) -> int:
+    return main(["demo", "--clock", "lockstep", "--out", str(folder), *ports, *options])
+
+
+def rows(folder: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader((folder / "walk.csv").open(newline="")))
+
+
+def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys):
+    assert demo(tmp_path, ports, "--duration", "4", "--push", "8@2:90") == 0
+    told = capsys.readouterr().out
+    assert "did not fall" in told and "BAD" not in told and "push of 8 N s to 90 degrees" in told
+    assert {path.name for path in tmp_path.iterdir()} == FILES
+
+    walk = rows(tmp_path)
+    assert list(walk[0]) == COLUMNS
+    walking = [row for row in walk if row["support"]]
+    # The walk starts with the first plan; before it stands one tick.
+    assert len(walking) == round(4 / TICK_S) and len(walk) == len(walking) + 1
+    assert float(walking[-1]["time_s"]) == pytest.approx(4 - TICK_S, abs=STEP_S / 2)
+    assert float(walking[-1]["true_com_x_m"]) == pytest.approx(1.2 * (4 - TICK_S), abs=0.15)
+    assert float(walk[-1]["pushed_y_n_s"]) == pytest.approx(8.0, abs=1e-9)
+    assert all(0.2 < float(row["s_sw"]) <= 1.0 for row in walking[5:25])
+
+    with can.CanutilsLogReader(tmp_path / "walk.candump.log") as log:
+        frames = [frame.arbitration_id for frame in log]
+    ticks = len(walk)
+    assert [frames.count(name) for name in (0x110, 0x111, 0x112, 0x140)] == [ticks] * 4
+    assert frames.count(0x100) == ticks + 1  # the last command is to stand
+
+    log = lcm.EventLog(str(tmp_path / "walk.lcmlog"), "r")
+    heard = [event.channel for event in log]
+    log.close()
+    assert set(heard) == set(CHANNELS)
+    assert heard.count("SADDLEWALK_TRUTH") == heard.count("SADDLEWALK_PLAN") == ticks
+
+
+def test_demo_in_lockstep_gives_the_same_bits_each_time(tmp_path, ports):
+    for folder in ("one", "two"):
+        demo(tmp_path / folder, ports, "--duration", "3", "--seed", "5")
+    demo(tmp_path / "other", ports, "--duration", "3", "--seed", "6")
+    one, two, other = (
+        (tmp_path / folder / "walk.csv").read_bytes() for folder in ("one", "two", "other")
+    )
+    assert one == two != other
+
+
+def test_a_fall_is_told_and_is_not_sound(tmp_path, ports, capsys):
+    assert demo(tmp_path, ports, "--duration", "4", "--push", "80@1:90") == 1
+    told = capsys.readouterr().out
+    assert "fell at" in told and "BAD  the wearer fell" in told
+    assert {path.name for path in tmp_path.iterdir()} == FILES
+    assert rows(tmp_path)[-1]["fallen"] == "1"
+
+
+def test_demo_in_real_time(tmp_path, ports):
+    options = ["demo", "--out", str(tmp_path), *ports, "--duration", "2", "--push", "5@1:0"]
+    program = [sys.executable, "-c", "from saddlewalk.cli import main; raise SystemExit(main())"]
+    done = subprocess.run([*program, *options], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert {path.name for path in tmp_path.iterdir()} == FILES
+    assert len(rows(tmp_path)) >= 2 / TICK_S - 2
+
+
+def test_demo_refuses_a_bus_on_which_somebody_walks(tmp_path, ports, capsys):
+    from saddlewalk.host import running_host
+
+    with running_host(f"--can={ports[1]}", "--lcm=none"):
+        assert demo(tmp_path, ports, "--duration", "1") == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1 and "busy with another walk" in told
+
+
+def test_demo_says_where_it_cannot_write(tmp_path, ports, capsys):
+    (tmp_path / "file").write_text("")
+    assert demo(tmp_path / "file" / "demo", ports) == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1 and str(tmp_path / "file" / "demo") in told
+
+
+def test_what_was_recorded_stays_when_the_firmware_dies(tmp_path, ports, capsys, monkeypatch):
+    from saddlewalk import exoskeleton, host
+
+    monkeypatch.setattr(exoskeleton, "SILENCE_S", 0.5)
+    started = []
+    popen = host.subprocess.Popen
+
+    def starting(*args, **kwargs):
+        started.append(popen(*args, **kwargs))
+        return started[-1]
+
+    monkeypatch.setattr(host.subprocess, "Popen", starting)
+    advance = exoskeleton.Exoskeleton._advance
+
+    def advancing(self, steps):
+        advance(self, steps)
+        if self.ticks == 20:
+            started[0].kill()
+
+    monkeypatch.setattr(exoskeleton.Exoskeleton, "_advance", advancing)
+    assert demo(tmp_path, ports, "--duration", "4") == 2
+    assert "silent" in capsys.readouterr().err
+    assert len(rows(tmp_path)) == 20
+    with can.CanutilsLogReader(tmp_path / "walk.candump.log") as log:
+        assert sum(1 for _ in log) >= 20 * 16
+
+
+def test_demo_makes_its_own_network_where_lcm_has_no_route(tmp_path):
+    unshare = ["unshare", "--user", "--map-root-user", "--net"]
+    trial = subprocess.run([*unshare, "true"], capture_output=True, check=False)
+    if trial.returncode != 0:
+        pytest.skip("no user namespaces here")
+    options = ["demo", "--clock", "lockstep", "--duration", "1", "--out", str(tmp_path)]
+    script = Path(sys.executable).with_name("saddlewalk")
+    done = subprocess.run(
+        [*unshare, str(script), *options], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "private network" in done.stdout
+
+
+def test_emulate_without_firmware_says_so(ports, capsys, monkeypatch):
+    from saddlewalk import exoskeleton
+
+    monkeypatch.setattr(exoskeleton, "SILENCE_S", 0.3)
+    for clock in ("lockstep", "realtime"):
+        assert main(["emulate", "--clock", clock, *ports]) == 2
+        told = capsys.readouterr().err
+        assert told.count("\n") == 1 and "silent" in told and "saddlewalk-host" in told
+
+
+def test_emulate_ends_with_status_1_after_a_fall(ports, capsys):
+    from saddlewalk.host import running_host
+
+    walk = ["emulate", "--clock", "lockstep", *ports, "--duration", "3"]
+    with running_host(f"--can={ports[1]}", f"--lcm={ports[3]}", "--clock=lockstep"):
+        assert main([*walk, "--push", "80@1:270"]) == 1
+        assert "fell" in capsys.readouterr().out
+        # The same firmware, still running, takes another wearer.
+        assert main(walk) == 0
