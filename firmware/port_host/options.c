@@ -79,7 +79,7 @@ static void print_help(const saddle_config_t *config)
          "Walking planner and stability supervisor between CAN and LCM, one tick every 80 ms.\n\n"
          "  --can SPEC         auto (default), socketcan:INTERFACE, udp, udp:GROUP:PORT\n"
          "  --lcm URL          default " DEFAULT_LCM "; none: without LCM\n"
-         "  --clock CLOCK      realtime (default); lockstep: one tick for each set of measurements\n"
+         "  --clock CLOCK      realtime (default); lockstep: one tick per set of measurements\n"
          "  --ankle ANKLE      ankle strategy, erf (default) or rigid\n"
          "  --set NAME=VALUE   a parameter of the person or the device, as often as needed\n"
          "  --help             this text\n\n"

@@ -19,21 +19,13 @@ static uint64_t now_us(void)
     return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
 }
 
-/** A command that the core will refuse still becomes the input: the core reports it as a fault and
- *  holds the last usable one. */
-static void take_command(saddle_runner_t *runner, const saddle_command_t *command)
-{
-    runner->input.command = *command;
-    if (!saddle_command_usable(command)) {
-        ++runner->commands_rejected;
-    }
-}
-
-static void on_lcm_command(void *user, const saddle_command_t *command)
+/** The newest usable command wins, wherever it came from. Judged here, not only by the core: one
+ *  that cannot be used must not take the place of a good one that still waits for its tick. */
+static void take_command(void *user, const saddle_command_t *command)
 {
     saddle_runner_t *runner = user;
-    if (command != NULL) {
-        take_command(runner, command);
+    if (command != NULL && saddle_command_usable(command)) {
+        runner->input.command = *command;
     } else {
         ++runner->commands_rejected;
     }
@@ -109,16 +101,18 @@ static int32_t oldest_age_us(const saddle_measurement_t *measurement)
     return oldest < INT32_MAX ? (int32_t)oldest : INT32_MAX;
 }
 
-static uint32_t rejected_frames(const saddle_wire_receiver_t *receiver)
+static uint32_t rejected(const saddle_runner_t *runner)
 {
-    return receiver->malformed + receiver->bad_crc + receiver->bad_version + receiver->bad_counter;
+    const saddle_wire_receiver_t *receiver = &runner->receiver;
+    return receiver->malformed + receiver->bad_crc + receiver->bad_version +
+           receiver->bad_counter + runner->commands_rejected;
 }
 
 static void send_frames(saddle_runner_t *runner, const saddle_output_t *output)
 {
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     const saddle_wire_health_t health = {.late_ticks = runner->late_ticks,
-                                         .rejected_frames = rejected_frames(&runner->receiver)};
+                                         .rejected_frames = rejected(runner)};
     saddle_wire_encode_output(output, &health, (uint8_t)runner->ticks, frames);
     for (size_t i = 0; i < SADDLE_WIRE_OUTPUT_FRAMES; ++i) {
         saddle_bus_frame_t frame = {.id = frames[i].id, .length = sizeof frames[i].data};
@@ -228,7 +222,7 @@ void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, 
         .bus = bus, .lcm = lcm, .stop_fd = stop_fd, .lockstep = lockstep};
     (void)saddle_init(&runner->context, config);
     if (!lockstep) { /* in lockstep commands come by CAN, in order with the measurements */
-        saddle_lcm_subscribe(lcm, on_lcm_command, runner);
+        saddle_lcm_subscribe(lcm, take_command, runner);
     }
 }
 

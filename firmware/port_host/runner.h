@@ -32,7 +32,7 @@ typedef struct {
     uint32_t ticks;
     uint32_t late_ticks;
     uint32_t frames_not_sent;
-    uint32_t commands_rejected;
+    uint32_t commands_rejected; /**< unknown mode, number not finite, or no LCM command at all */
 } saddle_runner_t;
 
 /** Ready the runner. config has passed saddle_config_check(); bus and lcm are kept. */

@@ -46,7 +46,7 @@ typedef struct {
 /** What HEALTH says beside the output. Both saturate at 65535 on the wire. */
 typedef struct {
     uint32_t late_ticks;
-    uint32_t rejected_frames;
+    uint32_t rejected_frames; /**< and commands: all that came and was not used */
 } saddle_wire_health_t;
 
 /** The messages that the firmware receives. */

@@ -1,0 +1,391 @@
+"""The host process: its clocks, its buses, and what it does with bad input."""
+
+import itertools
+import math
+import random
+import signal
+import subprocess
+import time
+
+import can
+import pytest
+
+from saddlewalk import paths
+from saddlewalk.bus import open_bus
+from saddlewalk.errors import UserError
+from saddlewalk.lcmbus import open_lcm
+from saddlewalk.playback import private_udp
+from saddlewalk.wire import Receiver, Sender, frame_crc
+
+WAIT_S = 2.0  # for what must come
+SILENCE_S = 0.1  # for what must not
+TICK_S = 0.08
+MESSAGES_PER_TICK = 12
+
+WALK = {"MODE": 1, "SPEED": 1.2, "HEEL_STRIKE": 0.1745}
+STANDING = {
+    "MEASURED_COM": {"HEIGHT": 1.0, "VX": 0.0, "VY": 0.0},
+    "MEASURED_LEFT": {"CONTACT": 1, "X": 0.0, "Y": 0.11},
+    "MEASURED_RIGHT": {"CONTACT": 1, "X": 0.0, "Y": -0.11},
+}
+
+
+class Host:
+    """A running host process on a bus of its own, with a node of ours on the same bus."""
+
+    def __init__(self, *options: str) -> None:
+        self.spec = private_udp()
+        command = [paths.built("bin/saddlewalk-host"), "--can", self.spec, *options]
+        pipe = subprocess.PIPE
+        self.process = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True)
+        self.first_line = self.process.stdout.readline()
+        assert self.process.stdout.readline() == "ready\n"
+        self.bus = open_bus(self.spec)
+        self.sender, self.receiver = Sender(), Receiver()
+
+    def __enter__(self) -> "Host":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.kill()
+        self.process.communicate()
+        self.bus.shutdown()
+
+    def send(self, name: str, **values: float) -> can.Message:
+        frame = self.sender.frame(name, **values)
+        self.bus.send(frame)
+        return frame
+
+    def measure(self, measurement=STANDING) -> None:
+        for name, values in measurement.items():
+            self.send(name, **values)
+
+    def tick_frames(self, timeout_s: float = WAIT_S) -> list[can.Message]:
+        """The frames up to the next HEALTH; fewer if it does not come in time."""
+        frames = []
+        deadline_s = time.monotonic() + timeout_s
+        while (frame := self.bus.recv(max(0.0, deadline_s - time.monotonic()))) is not None:
+            frames.append(frame)
+            if frame.arbitration_id == 0x140:
+                break
+        return frames
+
+    def tick(self) -> dict[str, dict[str, float]]:
+        """The messages of the next tick by name."""
+        return dict(self.receiver.accept(frame) for frame in self.tick_frames())
+
+    def stop(self, by: signal.Signals = signal.SIGTERM) -> str:
+        """End the process cleanly; returns its summary line."""
+        self.process.send_signal(by)
+        output, errors = self.process.communicate(timeout=WAIT_S)
+        assert (self.process.returncode, errors) == (0, "")
+        assert output.count("\n") == 1
+        return output
+
+
+def own_lcm() -> str:
+    """An LCM URL that no other test uses. Skips where LCM cannot run."""
+    url = f"udpm://239.255.76.67:{private_udp().rpartition(':')[2]}?ttl=0"
+    try:
+        open_lcm(url)
+    except UserError as error:
+        pytest.skip(str(error))
+    return url
+
+
+def lockstep(*options: str) -> Host:
+    return Host("--lcm", "none", "--clock", "lockstep", *options)
+
+
+def test_lockstep_answers_each_set_with_one_tick():
+    with lockstep() as host:
+        assert host.spec.removeprefix("udp:") in host.first_line
+        host.send("COMMAND", **WALK)
+        for number in range(40):
+            host.measure()
+            tick = host.tick()
+            assert len(tick) == MESSAGES_PER_TICK
+            assert {message["COUNTER"] for message in tick.values()} == {number % 16}
+            assert tick["PLAN_STEP"]["VALID"] == 1
+            assert tick["PLAN_ANKLE"]["SPEED"] == pytest.approx(1.2, abs=1e-4)
+            assert tick["SCORES_STEP"]["S_SW"] == pytest.approx(1.0, abs=1e-3)
+            assert tick["SCORES_MARGIN"]["MOS_COM"] > 0
+            assert tick["SCORES_FORCE"]["FAULTS"] == 0
+            assert tick["HEALTH"]["STATUS"] == tick["HEALTH"]["REJECTED_FRAMES"] == 0
+        assert tick["PLAN_STEP"]["STEP_COUNT"] >= 4
+        assert host.tick_frames(SILENCE_S) == []
+        assert host.stop().startswith("40 ticks, 0 late; frames: 121 accepted")
+
+
+def random_sets(seed: int):
+    rng = random.Random(seed)
+    while True:
+        yield {
+            name: {
+                signal_name: rng.randrange(2)
+                if signal_name == "CONTACT"
+                else rng.choice((value + rng.gauss(0, 0.1), math.nan, rng.uniform(-10, 10)))
+                for signal_name, value in values.items()
+            }
+            for name, values in STANDING.items()
+        }
+
+
+def lockstep_bytes(seed: int) -> list[bytes]:
+    """All that the host sends in 100 ticks, without the CRC's frame identifiers."""
+    with lockstep() as host:
+        sent = []
+        host.send("COMMAND", **WALK)
+        for measurement in itertools.islice(random_sets(seed), 100):
+            host.measure(measurement)
+            sent += [bytes(frame.data) for frame in host.tick_frames()]
+        return sent
+
+
+def test_lockstep_gives_the_same_bits_each_time():
+    first = lockstep_bytes(1)
+    assert len(first) == 100 * MESSAGES_PER_TICK
+    assert lockstep_bytes(1) == first
+    assert lockstep_bytes(2) != first
+
+
+def corrupted(frame: can.Message, index: int, value: int, seal: bool) -> can.Message:
+    frame.data[index] = value
+    if seal:
+        frame.data[0] = frame_crc(frame.arbitration_id, frame.data)
+    return frame
+
+
+def test_bad_frames_are_counted_and_not_used():
+    with lockstep() as host:
+        host.measure()
+        before = host.tick()
+        fall = {"HEIGHT": 0.2, "VX": 0.0, "VY": 0.0}
+        com = host.sender.frame("MEASURED_COM", **fall)
+        sides = [host.sender.frame(name, **STANDING[name]) for name in list(STANDING)[1:]]
+        for frame in sides:
+            host.bus.send(frame)
+        host.bus.send(corrupted(com, 2, com.data[2] ^ 1, seal=False))
+        host.bus.send(corrupted(com, 1, 0, seal=True))  # the counter of the first set
+        host.bus.send(corrupted(host.sender.frame("COMMAND", **WALK), 6, 99, seal=True))
+        host.bus.send(can.Message(arbitration_id=0x7FF, is_extended_id=False, data=bytes(8)))
+        host.bus.send(can.Message(arbitration_id=0x110, is_extended_id=True, data=com.data))
+        host.bus.send(can.Message(arbitration_id=0x110, is_extended_id=False, data=bytes(7)))
+        host.bus._sending.sendto(b"junk", host.bus._address)
+        assert host.tick_frames(SILENCE_S) == []
+        host.measure()
+        after = host.tick()
+        assert after["HEALTH"]["REJECTED_FRAMES"] == 7
+        assert after["PLAN_STEP"]["VALID"] == 0
+        assert after["SCORES_MARGIN"] == before["SCORES_MARGIN"] | {"COUNTER": 1}
+        assert "rejected 1 bad CRC, 1 bad counter, 1 bad version, 4 malformed" in host.stop()
+
+
+def test_any_datagram_is_survived():
+    """Random bytes, and true datagrams with random changes."""
+    rng = random.Random(5)
+    with lockstep() as host, open_bus(host.spec) as listener:
+        host.bus.send(host.sender.frame("COMMAND", **WALK))
+        datagram = listener._receiving.recv(1000)
+        sent = 0
+        for _ in range(3000):
+            changed = bytearray(datagram)
+            for _ in range(rng.randrange(1, 4)):
+                changed[rng.randrange(len(changed))] = rng.randrange(256)
+            junk = rng.choice(
+                (changed, changed[: rng.randrange(len(changed))], rng.randbytes(rng.randrange(600)))
+            )
+            host.bus._sending.sendto(junk, host.bus._address)
+            sent += 1
+            if sent % 50 == 0:
+                host.tick_frames(0.002)  # buffers are finite, the host's and our own
+        host.measure()
+        tick = host.tick()
+        assert len(tick) == MESSAGES_PER_TICK
+        assert tick["HEALTH"]["REJECTED_FRAMES"] > 0.9 * sent
+
+
+def test_an_unusable_command_is_counted_and_the_last_one_holds():
+    with lockstep() as host:
+        host.send("COMMAND", **WALK)
+        for rejected, bad in enumerate(({"SPEED": math.nan}, {"MODE": 7}), start=1):
+            host.send("COMMAND", **(WALK | bad))
+            host.measure()
+            tick = host.tick()
+            assert tick["HEALTH"]["REJECTED_FRAMES"] == rejected
+            assert tick["PLAN_ANKLE"]["SPEED"] == pytest.approx(1.2, abs=1e-4)
+        assert "commands rejected 2;" in host.stop()
+
+
+def test_parameters_reach_the_core():
+    with lockstep("--set", "step_width_fast_m=0.2", "--ankle=rigid") as host:
+        host.send("COMMAND", **WALK)
+        host.measure()
+        tick = host.tick()
+        assert tick["PLAN_LEFT"]["Y"] == pytest.approx(0.1, abs=1e-4)
+        assert tick["PLAN_ANKLE"]["HEEL_STRIKE"] == 0
+
+
+def test_realtime_ticks_every_80_ms_without_any_measurement():
+    with Host("--lcm", "none") as host:
+        host.send("COMMAND", **WALK)
+        host.tick()
+        times_s = []
+        for _ in range(15):
+            tick = host.tick()
+            times_s.append(time.monotonic())
+            assert tick["PLAN_STEP"]["VALID"] == 1
+            assert all(math.isnan(tick["SCORES_STEP"][score]) for score in ("S_SW", "S_PEND"))
+        # On a loaded machine one tick may come late, but the grid does not move.
+        assert (times_s[-1] - times_s[0]) / 14 == pytest.approx(TICK_S, abs=0.005)
+        assert tick["HEALTH"]["LATE_TICKS"] <= 2
+        assert tick["PLAN_STEP"]["STEP_COUNT"] >= 1
+
+
+def test_realtime_uses_a_measurement_until_it_is_too_old():
+    with Host("--lcm", "none", "--set=measurement_max_age_s=0.2") as host:
+        host.measure()
+        margins = [host.tick()["SCORES_MARGIN"]["MOS_COM"] for _ in range(5)]
+        assert margins[0] > 0
+        assert math.isnan(margins[-1])
+
+
+@pytest.mark.parametrize("clock", ["realtime", "lockstep"])
+@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM])
+def test_signals_end_it_cleanly(clock, by):
+    with Host("--lcm", "none", "--clock", clock) as host:
+        assert " ticks, " in host.stop(by)
+
+
+def test_a_flood_stops_neither_the_ticks_nor_the_end():
+    with Host("--lcm", "none") as host:
+        until_s = time.monotonic() + 0.5
+        while time.monotonic() < until_s:
+            host.bus._sending.sendto(b"flood", host.bus._address)
+        ticks = int(host.stop().split()[0])
+        assert ticks >= 3
+
+
+class LcmNode:
+    """Another LCM process's view: what came, by channel."""
+
+    def __init__(self, url: str) -> None:
+        self.lcm = open_lcm(url)
+        self.latest = {}
+        self.lcm.subscribe("SADDLEWALK_(PLAN|SCORES|BOS|HEALTH)", self._take).set_queue_capacity(
+            1000
+        )
+
+    def _take(self, channel: str, data: bytes) -> None:
+        from saddlewalk import lcm_types
+
+        self.latest[channel] = getattr(lcm_types, f"{channel[11:].lower()}_t").decode(data)
+
+    def take(self, timeout_s: float = WAIT_S) -> dict:
+        """What came by the next SADDLEWALK_HEALTH, which is the last of a tick."""
+        self.latest = {}
+        deadline_s = time.monotonic() + timeout_s
+        while "SADDLEWALK_HEALTH" not in self.latest and time.monotonic() < deadline_s:
+            self.lcm.handle_timeout(50)
+        return self.latest
+
+    def command(self, mode: int, speed_m_s: float) -> None:
+        from saddlewalk.lcm_types import command_t
+
+        message = command_t()
+        message.mode, message.speed_m_s = mode, speed_m_s
+        self.lcm.publish("SADDLEWALK_COMMAND", message.encode())
+
+
+def test_lcm_says_what_can_says():
+    url = own_lcm()
+    with Host("--lcm", url, "--clock", "lockstep") as host:
+        node = LcmNode(url)
+        host.send("COMMAND", **WALK)
+        for _ in range(5):
+            host.measure()
+            on_can, on_lcm = host.tick(), node.take()
+        plan, health = on_lcm["SADDLEWALK_PLAN"], on_lcm["SADDLEWALK_HEALTH"]
+        scores, bos = on_lcm["SADDLEWALK_SCORES"], on_lcm["SADDLEWALK_BOS"]
+        half_step = 0.5e-4  # half a step of the CAN signals
+        assert plan.com_m[1] == pytest.approx(on_can["PLAN_COM"]["Y"], abs=1.01 * half_step)
+        assert plan.theta_rad == pytest.approx(on_can["PLAN_STEP"]["THETA"], abs=2.01 * half_step)
+        assert scores.mos_com_m == pytest.approx(
+            on_can["SCORES_MARGIN"]["MOS_COM"], abs=1.01 * half_step
+        )
+        assert {message.utime_us for message in on_lcm.values()} == {4 * 80000}
+        assert (health.tick, health.measurement_age_us, health.frames_accepted) == (4, 0, 16)
+        assert health.can_transport == health.TRANSPORT_UDP
+        assert bos.defined == 1
+        assert max(bos.y_m) == pytest.approx(0.11, abs=0.01)
+
+
+def test_commands_by_lcm_and_the_newest_wins():
+    url = own_lcm()
+    with Host("--lcm", url) as host:
+        node = LcmNode(url)
+        node.command(1, 0.8)
+        assert speed_after(node) == pytest.approx(0.8)
+        host.send("COMMAND", MODE=0, SPEED=0.0, HEEL_STRIKE=0.0)
+        assert speed_after(node) == 0
+        host.send("COMMAND", **WALK)
+        assert speed_after(node) == pytest.approx(1.2, abs=1e-4)
+        node.command(0, 0.0)
+        assert speed_after(node) == 0
+
+
+def speed_after(node: LcmNode) -> float:
+    """Planned speed, once a tick has surely seen what was sent before."""
+    node.take()
+    node.take()
+    return node.take()["SADDLEWALK_PLAN"].speed_m_s
+
+
+def test_bad_lcm_commands_are_counted_and_not_used():
+    url = own_lcm()
+    with Host("--lcm", url) as host:
+        node = LcmNode(url)
+        node.command(1, 0.8)
+        node.command(-1, 1.0)
+        node.command(1, math.nan)
+        assert speed_after(node) == pytest.approx(0.8)
+        node.command(1, 0.8)
+        sender = open_lcm(url)
+        for junk in (b"", b"junk", bytes(17), bytes(1000)):
+            sender.publish("SADDLEWALK_COMMAND", junk)
+        assert speed_after(node) == pytest.approx(0.8)
+        assert node.take()["SADDLEWALK_HEALTH"].commands_rejected == 6
+        assert "commands rejected 6;" in host.stop()
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (["--clock", "fast"], "--clock fast: give realtime or lockstep"),
+        (["--can", "vcan0"], "--can vcan0: give auto, "),
+        (["--can", "udp:10.0.0.1:5000"], "--can udp:10.0.0.1:5000: give a multicast group"),
+        (["--can", "socketcan:no_such"], "--can socketcan:no_such: CAN interface no_such "),
+        (["--lcm", "nowhere:"], "--lcm nowhere: cannot be opened: give an LCM URL"),
+        (["--set", "body_mass=70"], "--set body_mass=70: give NAME=VALUE"),
+        (["--set", "body_mass_kg"], "--set body_mass_kg: give NAME=VALUE"),
+        (["--set", "body_mass_kg=nan"], "--set body_mass_kg=nan: give a number from 5 to 300"),
+        (["--set", "body_mass_kg=70kg"], "--set body_mass_kg=70kg: give a number from 5 to"),
+        (["--set", "step_width_slow_speed_m_s=2"], "--set step_width_slow_speed_m_s=2: "),
+        (["--ankle", "cycloid"], "--ankle cycloid: give erf or rigid"),
+        (["--colour"], "--colour: give an option that --help lists"),
+        (["--can"], "--can: give a value"),
+        (["now"], "now: give options only"),
+    ],
+)
+def test_a_wrong_option_is_one_line(options, named):
+    command = [paths.built("bin/saddlewalk-host"), *options]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=WAIT_S, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"saddlewalk-host: {named}")
+    assert done.stderr.count("\n") == 1
+
+
+def test_help_lists_every_parameter():
+    command = [paths.built("bin/saddlewalk-host"), "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=WAIT_S, check=True)
+    assert "body_mass_kg                 63.3        5      300" in done.stdout
