@@ -1,0 +1,157 @@
+/** Regressions, amplitudes and limits against the model page's numbers. */
+#include "core_test.h"
+
+#include <saddlewalk/gait_model.h>
+
+static saddle_config_t config;
+static saddle_body_t body;
+
+void setUp(void)
+{
+    config = paper_config();
+    body = saddle_body(&config);
+}
+
+void tearDown(void) {}
+
+static void test_body_constants(void)
+{
+    /* Four decimals are printed: half of the last. */
+    TEST_ASSERT_DOUBLE_WITHIN(5e-5, 1.0203, body.pendulum_m);
+    TEST_ASSERT_DOUBLE_WITHIN(5e-5, 3.1002, body.natural_frequency_rad_s);
+    TEST_ASSERT_DOUBLE_WITHIN(5e-5, 0.4838, body.half_step_max_m);
+    TEST_ASSERT_DOUBLE_WITHIN(5e-4, 1.935, body.speed_ceiling_m_s);
+}
+
+static void test_step_width_is_piecewise_with_the_ends_in_the_middle_piece(void)
+{
+    static const struct {
+        double speed, width;
+    } table[] = {{-1.0, 0.22},    {0.0, 0.22},     {0.5, 0.22}, {0.7, 0.19664},
+                 {1.0, 0.1328},   {1.2, 0.10},     {5.0, 0.10}};
+    for (size_t i = 0; i < COUNT_OF(table); i++) {
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, table[i].width,
+                                  saddle_step_width_m(&config, (float)table[i].speed));
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.21792, saddle_step_width_m(&config, 0.6f));
+    ASSERT_SAME_FLOAT(0.22f, saddle_step_width_m(&config, nextafterf(0.6f, 0.0f)));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.11152, saddle_step_width_m(&config, 1.1f));
+    ASSERT_SAME_FLOAT(0.10f, saddle_step_width_m(&config, nextafterf(1.1f, 2.0f)));
+}
+
+static void test_gait_at_the_paper_s_speeds(void)
+{
+    static const double speeds[] = {0.7, 1.0, 1.2, 1.6};
+    for (size_t i = 0; i < COUNT_OF(speeds); i++) {
+        const double v = speeds[i];
+        const saddle_gait_t gait = saddle_gait(&config, (float)v);
+        const double step = 2.0 * (0.1802 * v + 0.1351);
+        ASSERT_SAME_FLOAT((float)v, gait.speed_m_s);
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, step, gait.step_length_m);
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.02656 * v + 0.002575,
+                                  gait.vertical_amplitude_m);
+        TEST_ASSERT_DOUBLE_WITHIN(4 * FLOAT_TOLERANCE, v / step, gait.cadence_hz); /* up to 2 Hz */
+        ASSERT_SAME_FLOAT(saddle_step_width_m(&config, (float)v), gait.step_width_m);
+    }
+}
+
+/* min S_SW = 1 - 2 A_y / d_SW = 1 - 1/(pi v), the paper's finding. */
+static void test_lateral_amplitude_gives_the_paper_s_stability(void)
+{
+    static const struct {
+        float speed;
+        double s_sw;
+    } table[] = {{0.7f, 0.545}, {1.0f, 0.682}, {1.2f, 0.735}, {1.6f, 0.801}};
+    for (size_t i = 0; i < COUNT_OF(table); i++) {
+        const saddle_gait_t gait = saddle_gait(&config, table[i].speed);
+        const double s_sw = 1.0 - 2.0 * (double)gait.lateral_amplitude_m / (double)gait.step_width_m;
+        TEST_ASSERT_DOUBLE_WITHIN(5e-4, table[i].s_sw, s_sw);
+    }
+}
+
+static void test_lateral_amplitude_is_tangency_below_half_a_metre_per_second(void)
+{
+    const float slow[] = {0.01f, 0.318f, 0.5f};
+    for (size_t i = 0; i < COUNT_OF(slow); i++) {
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.22 / PI,
+                                  saddle_gait(&config, slow[i]).lateral_amplitude_m);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.22 / (2.0 * PI * 0.55),
+                              saddle_gait(&config, 0.55f).lateral_amplitude_m);
+}
+
+static void test_com_never_reaches_the_foot(void)
+{
+    for (float speed = 0.01f; speed < 5.0f; speed += 0.01f) {
+        const saddle_gait_t gait = saddle_gait(&config, speed);
+        TEST_ASSERT_TRUE(gait.lateral_amplitude_m < 0.5f * gait.step_width_m);
+    }
+}
+
+static void test_step_bounds(void)
+{
+    const saddle_step_bounds_t bounds = saddle_step_bounds(&config, &body, 1.2f);
+    const double frequency = sqrt(GRAVITY / (0.57 * 1.79));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.2 / (2.0 * frequency), bounds.min_m);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.1802 * 1.2 + 0.1351, bounds.reference_m);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 3.0 / (2.0 * frequency), bounds.max_m);
+    TEST_ASSERT_TRUE(bounds.feasible);
+}
+
+static void test_feasible_speeds_lie_between_zero_and_the_ceiling(void)
+{
+    const struct {
+        float speed;
+        bool feasible;
+    } table[] = {{-1.0f, false},  {-0.0f, false}, {0.0f, false},  {1e-6f, true}, {1.9f, true},
+                 {1.9345f, true}, {1.936f, false}, {3.0f, false}, {1e6f, false}};
+    for (size_t i = 0; i < COUNT_OF(table); i++) {
+        TEST_ASSERT_EQUAL(table[i].feasible,
+                          saddle_step_bounds(&config, &body, table[i].speed).feasible);
+    }
+}
+
+/* Whichever of the two limits comes first, in every configuration that passes the check. */
+static void test_ceiling_parts_feasible_from_infeasible_for_any_person(void)
+{
+    uint32_t state = 7;
+    int reach_first = 0;
+    int xcom_first = 0;
+    for (int i = 0; i < 20000; i++) {
+        config = paper_config();
+        config.body_height_m = random_in(&state, 0.7f, 2.5f);
+        config.half_step_slope_s = random_in(&state, 0.001f, 0.4f);
+        config.half_step_intercept_m = random_in(&state, 0.01f, 0.5f);
+        config.peak_speed_m_s = random_in(&state, 0.5f, 5.0f);
+        if (saddle_config_check(&config) != NULL) {
+            continue;
+        }
+        body = saddle_body(&config);
+        const float ceiling = body.speed_ceiling_m_s;
+        TEST_ASSERT_TRUE(saddle_step_bounds(&config, &body, 0.99f * ceiling).feasible);
+        const saddle_step_bounds_t above = saddle_step_bounds(&config, &body, 1.001f * ceiling);
+        TEST_ASSERT_FALSE(above.feasible);
+        if (above.reference_m < above.max_m) {
+            xcom_first++;
+        } else {
+            reach_first++;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_INT(1000, reach_first);
+    TEST_ASSERT_GREATER_THAN_INT(1000, xcom_first);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_body_constants);
+    RUN_TEST(test_step_width_is_piecewise_with_the_ends_in_the_middle_piece);
+    RUN_TEST(test_gait_at_the_paper_s_speeds);
+    RUN_TEST(test_lateral_amplitude_gives_the_paper_s_stability);
+    RUN_TEST(test_lateral_amplitude_is_tangency_below_half_a_metre_per_second);
+    RUN_TEST(test_com_never_reaches_the_foot);
+    RUN_TEST(test_step_bounds);
+    RUN_TEST(test_feasible_speeds_lie_between_zero_and_the_ceiling);
+    RUN_TEST(test_ceiling_parts_feasible_from_infeasible_for_any_person);
+    return UNITY_END();
+}
