@@ -9,10 +9,13 @@
 #define QUARTER_Q32 0x40000000u
 #define STEP_MASK_Q32 0x7FFFFFFFu
 
+/* The largest float below 2 pi: the last 2^-25 of a stride would round up to a whole turn. */
+#define THETA_MAX_RAD 6.28318500f
+
 /* Where the phase lies in its step. */
 typedef struct {
-    float progress;    /* [0, 1) from one saddle via point to the next */
-    float angle_rad;   /* [-pi/2, pi/2), 0 at the foot via point */
+    float progress;    /* [0, 1] from one saddle via point to the next */
+    float angle_rad;   /* [-pi/2, pi/2], 0 at the foot via point */
     float to_saddle_s; /* until the step ends */
 } step_phase_t;
 
@@ -159,7 +162,8 @@ static void write_plan(const saddle_planner_t *planner, const saddle_config_t *c
     plan->step_count = step_count(planner);
     plan->support = (uint8_t)(plan->step_count % 2u == 0u ? SADDLE_LEFT : SADDLE_RIGHT);
     plan->stride_count = planner->stride_count;
-    plan->theta_rad = (float)phase_q32(planner) * (SADDLE_TWO_PI / Q32);
+    plan->theta_rad =
+        saddle_clamp((float)phase_q32(planner) * (SADDLE_TWO_PI / Q32), 0.0f, THETA_MAX_RAD);
     plan->origin_x_nm = planner->origin_x_nm;
     plan->speed_m_s = planner->gait.speed_m_s;
     plan->step_length_m = planner->gait.step_length_m;
