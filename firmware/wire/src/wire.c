@@ -37,7 +37,8 @@ uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length)
     for (size_t i = 0; i < length; ++i) {
         crc ^= bytes[i];
         for (int bit = 0; bit < 8; ++bit) {
-            crc = (uint8_t)((crc << 1) ^ ((crc & 0x80u) != 0u ? 0x1Du : 0u));
+            const uint32_t polynomial = (crc & 0x80u) != 0u ? 0x1Du : 0u;
+            crc = (uint8_t)((uint32_t)crc << 1 ^ polynomial);
         }
     }
     return crc ^ 0xFFu;
