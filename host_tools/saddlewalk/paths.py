@@ -3,6 +3,8 @@
 import os
 from pathlib import Path
 
+from saddlewalk.errors import UserError
+
 CHECKOUT = Path(__file__).resolve().parents[2]
 
 
@@ -14,9 +16,9 @@ def build_dir() -> Path:
 def built(relative: str) -> Path:
     """The absolute path of a build product, such as `bin/saddlewalk-host`.
 
-    Raises FileNotFoundError, naming the product and the command that makes it, if it isn't there.
+    Raises UserError, naming the product and the command that makes it, if it isn't there.
     """
     path = build_dir().absolute() / relative
     if not path.exists():
-        raise FileNotFoundError(f"{path} is missing: run `make build` in {CHECKOUT}")
+        raise UserError(f"{path} is missing: run `make build` in {CHECKOUT}")
     return path

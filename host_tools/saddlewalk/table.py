@@ -78,12 +78,12 @@ def _open(source: str) -> contextlib.AbstractContextManager[TextIO]:
     return Path(source).open(newline="", encoding="utf-8-sig")
 
 
-def _numbers(
-    name: str, line: int, row: dict[str, str | None], columns: Sequence[str]
-) -> dict[str, float]:
+def _numbers(name: str, line: int, row: dict[str, str], columns: Sequence[str]) -> dict[str, float]:
+    if None in row or None in row.values():
+        raise UserError(f"{name}: line {line}: not as many cells as the header has columns")
     numbers = {}
     for column in columns:
-        text = (row[column] or "").strip()
+        text = row[column].strip()
         try:
             numbers[column] = float(text) if text else math.nan
         except ValueError:

@@ -9,6 +9,7 @@ import cffi
 import pytest
 
 from saddlewalk import paths
+from saddlewalk.errors import UserError
 
 TESTS = Path(__file__).parents[1]
 BOOTSTRAP = paths.CHECKOUT / "tools" / "bootstrap.sh"
@@ -29,7 +30,7 @@ def test_every_declared_function_is_in_the_library():
 
 def test_a_missing_product_is_named_with_the_command_that_makes_it(monkeypatch, tmp_path):
     monkeypatch.setenv("SADDLEWALK_BUILD", str(tmp_path))
-    with pytest.raises(FileNotFoundError, match=r"bin/saddlewalk-host.*make build"):
+    with pytest.raises(UserError, match=r"bin/saddlewalk-host.*make build"):
         paths.built("bin/saddlewalk-host")
 
 

@@ -177,6 +177,8 @@ def bad_files():
     yield [*rows, rows[1]], "line 3, t_s"
     yield [*rows, "," + rows[1][2:]], "line 3, t_s"
     yield [rows[0], "inf" + rows[1][1:]], "line 2, t_s"
+    yield [rows[0], rows[1] + ",0"], "line 2: not as many cells"
+    yield [rows[0], rows[1][:-2]], "line 2: not as many cells"
     yield [""], "no column t_s"
 
 
