@@ -1,0 +1,473 @@
+/** The tick's contract: a complete output on every path, time, contexts, and whatever bytes come in. */
+#include "core_test.h"
+
+/* Every field of the output, so that it can be compared without its padding. */
+typedef enum { FLOATS, OTHER } kind_t;
+
+#define FIELD(path, kind) {offsetof(saddle_output_t, path), sizeof(((saddle_output_t *)0)->path), kind}
+#define SCORES(scores)                                                                           \
+    FIELD(scores.valid, OTHER), FIELD(scores.v_comp_m_s, FLOATS), FIELD(scores.s_pend, FLOATS),  \
+        FIELD(scores.s_jump, FLOATS), FIELD(scores.s_sw, FLOATS),                                \
+        FIELD(scores.mos_com_m, FLOATS), FIELD(scores.mos_xcom_m, FLOATS),                       \
+        FIELD(scores.gravity_n, FLOATS), FIELD(scores.xcom_m, FLOATS),                           \
+        FIELD(scores.bos.centre_m, FLOATS), FIELD(scores.bos.axis_x, FLOATS),                    \
+        FIELD(scores.bos.radius_m, FLOATS), FIELD(scores.bos.half_depth_m, FLOATS),              \
+        FIELD(scores.bos.defined, OTHER)
+
+static const struct {
+    size_t offset, size;
+    kind_t kind;
+} FIELDS[] = {
+    FIELD(status, OTHER),
+    FIELD(limits, OTHER),
+    FIELD(faults, OTHER),
+    FIELD(plan.valid, OTHER),
+    FIELD(plan.phase, OTHER),
+    FIELD(plan.support, OTHER),
+    FIELD(plan.step_count, OTHER),
+    FIELD(plan.stride_count, OTHER),
+    FIELD(plan.theta_rad, FLOATS),
+    FIELD(plan.origin_x_nm, OTHER),
+    FIELD(plan.speed_m_s, FLOATS),
+    FIELD(plan.step_length_m, FLOATS),
+    FIELD(plan.step_width_m, FLOATS),
+    FIELD(plan.com_m, FLOATS),
+    FIELD(plan.com_velocity_m_s, FLOATS),
+    FIELD(plan.foot_m, FLOATS),
+    FIELD(plan.swing_velocity_m_s, FLOATS),
+    FIELD(plan.leg_length_m, FLOATS),
+    FIELD(plan.toe_off_rad, FLOATS),
+    FIELD(plan.heel_strike_rad, FLOATS),
+    FIELD(plan.time_to_heel_strike_s, FLOATS),
+    FIELD(plan.landing_m, FLOATS),
+    SCORES(plan_scores),
+    SCORES(scores),
+};
+
+static saddle_config_t config;
+static saddle_context_t context;
+static saddle_input_t input;
+static saddle_output_t output;
+
+static void prefill(void)
+{
+    memset(&output, 0xA5, sizeof output);
+}
+
+static saddle_measurement_t good_measurement(void)
+{
+    return (saddle_measurement_t){
+        .com = {.height_m = 1.0f, .velocity_m_s = {1.1f, 0.05f}},
+        .foot = {{.cop_m = {0.35f, 0.06f}, .contact = true},
+                 {.cop_m = {-0.25f, -0.05f}, .contact = true}},
+    };
+}
+
+static saddle_input_t walking_input(uint64_t time_us)
+{
+    return (saddle_input_t){.time_us = time_us,
+                            .command = {SADDLE_COMMAND_WALK, 1.2f, 0.17453293f},
+                            .measurement = good_measurement()};
+}
+
+void setUp(void)
+{
+    config = paper_config();
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
+    input = walking_input(0);
+    prefill();
+}
+
+void tearDown(void) {}
+
+static saddle_status_t tick_at(uint64_t time_us)
+{
+    input.time_us = time_us;
+    prefill();
+    return saddle_tick(&context, &input, &output);
+}
+
+static bool same_output(const saddle_output_t *a, const saddle_output_t *b)
+{
+    for (size_t i = 0; i < COUNT_OF(FIELDS); i++) {
+        if (memcmp((const char *)a + FIELDS[i].offset, (const char *)b + FIELDS[i].offset,
+                   FIELDS[i].size) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool finite_output(const saddle_output_t *o)
+{
+    for (size_t i = 0; i < COUNT_OF(FIELDS); i++) {
+        for (size_t k = 0; FIELDS[i].kind == FLOATS && k < FIELDS[i].size; k += sizeof(float)) {
+            float value;
+            memcpy(&value, (const char *)o + FIELDS[i].offset + k, sizeof value);
+            if (!isfinite(value)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* Between two neighbours there is room for padding only: nothing is left out above. */
+static void test_field_list_is_complete(void)
+{
+    size_t end = 0;
+    for (size_t i = 0; i < COUNT_OF(FIELDS); i++) {
+        const size_t alignment = FIELDS[i].offset % 8u == 0u ? 8u : 4u;
+        TEST_ASSERT_TRUE(FIELDS[i].offset >= end);
+        TEST_ASSERT_TRUE(FIELDS[i].offset - end < alignment);
+        end = FIELDS[i].offset + FIELDS[i].size;
+    }
+    TEST_ASSERT_TRUE(sizeof(saddle_output_t) - end < 8u);
+}
+
+static void assert_hold(saddle_status_t status)
+{
+    const saddle_output_t hold = {.status = status};
+    TEST_ASSERT_EQUAL_INT(status, output.status);
+    TEST_ASSERT_TRUE(same_output(&hold, &output));
+}
+
+static void test_null_arguments_are_refused_with_a_complete_output(void)
+{
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_tick(NULL, &input, &output));
+    assert_hold(SADDLE_ERROR_NULL);
+    prefill();
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_tick(&context, NULL, &output));
+    assert_hold(SADDLE_ERROR_NULL);
+    prefill();
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_tick(NULL, NULL, &output));
+    assert_hold(SADDLE_ERROR_NULL);
+}
+
+static void test_tick_without_an_output_changes_nothing(void)
+{
+    input.time_us = 5000000;
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_tick(&context, &input, NULL));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_tick(NULL, NULL, NULL));
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(0)); /* still the first */
+}
+
+static void test_context_without_init_is_refused_with_a_complete_output(void)
+{
+    const uint8_t fills[] = {0x00, 0xA5, 0xFF};
+    for (size_t i = 0; i < COUNT_OF(fills); i++) {
+        memset(&context, fills[i], sizeof context);
+        TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_UNINITIALISED, tick_at(0));
+        assert_hold(SADDLE_ERROR_UNINITIALISED);
+    }
+}
+
+static void test_failed_init_leaves_the_context_refused(void)
+{
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(0));
+    config.body_height_m = NAN;
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_CONFIG, saddle_init(&context, &config));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_UNINITIALISED, tick_at(80000));
+    assert_hold(SADDLE_ERROR_UNINITIALISED);
+
+    config = paper_config();
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_init(&context, NULL));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_UNINITIALISED, tick_at(160000));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_init(NULL, &config));
+}
+
+static void test_good_tick_writes_every_field(void)
+{
+    saddle_output_t other;
+    saddle_context_t twin;
+    saddle_init(&twin, &config);
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(0));
+    memset(&other, 0x5A, sizeof other);
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_tick(&twin, &input, &other));
+    TEST_ASSERT_TRUE(same_output(&output, &other)); /* whatever lay there before */
+    TEST_ASSERT_TRUE(output.plan.valid);
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_VALID_ALL, output.plan_scores.valid);
+    TEST_ASSERT_EQUAL_HEX32(0, output.faults);
+    TEST_ASSERT_EQUAL_HEX32(0, output.limits);
+}
+
+static void test_time_backwards_is_refused_and_forgotten(void)
+{
+    saddle_context_t twin;
+    saddle_output_t undisturbed;
+    saddle_init(&twin, &config);
+    tick_at(1000000);
+    saddle_tick(&twin, &input, &undisturbed);
+
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME, tick_at(999999));
+    assert_hold(SADDLE_ERROR_TIME);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME, tick_at(0));
+    assert_hold(SADDLE_ERROR_TIME);
+
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(1080000));
+    saddle_tick(&twin, &input, &undisturbed);
+    TEST_ASSERT_TRUE(same_output(&undisturbed, &output));
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(1080000)); /* the same instant again is no error */
+}
+
+static void test_plan_advances_by_the_time_that_passed_from_any_origin(void)
+{
+    const uint64_t origins[] = {0, 1, 0xFFFFFFFFu, 0x100000000u, UINT64_MAX - 80000u};
+    for (size_t i = 0; i < COUNT_OF(origins); i++) {
+        saddle_init(&context, &config);
+        tick_at(origins[i]);
+        TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, output.plan.com_m.x);
+        tick_at(origins[i] + 80000u);
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.2 * 0.08, output.plan.com_m.x);
+        TEST_ASSERT_EQUAL_HEX32(0, output.limits);
+    }
+}
+
+static void test_late_tick_advances_by_tick_max_and_says_so(void)
+{
+    const uint64_t gaps[] = {200001, 1000000, 0xFFFFFFFFu, 0x100000000u, 0x100000000u + 80000u,
+                             UINT64_MAX};
+    for (size_t i = 0; i < COUNT_OF(gaps); i++) {
+        saddle_init(&context, &config);
+        tick_at(0);
+        TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(gaps[i]));
+        TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_TICK_GAP, output.limits);
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.2 * 0.2, output.plan.com_m.x);
+    }
+    saddle_init(&context, &config);
+    tick_at(0);
+    tick_at(200000); /* tick_max_s itself is not late */
+    TEST_ASSERT_EQUAL_HEX32(0, output.limits);
+    tick_at(400001);
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_TICK_GAP, output.limits);
+    tick_at(480001);
+    TEST_ASSERT_EQUAL_HEX32(0, output.limits); /* only the late tick is flagged */
+}
+
+static void test_unusable_command_leaves_the_last_good_one(void)
+{
+    input.command.speed_m_s = NAN;
+    tick_at(0);
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_COMMAND, output.faults);
+    TEST_ASSERT_FALSE(output.plan.valid); /* none yet: standing */
+
+    input = walking_input(0);
+    tick_at(80000);
+    input.command = (saddle_command_t){.mode = 200, .speed_m_s = 0.5f};
+    tick_at(160000);
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_COMMAND, output.faults);
+    TEST_ASSERT_EQUAL_HEX32(0, output.limits);
+    ASSERT_SAME_FLOAT(1.2f, output.plan.speed_m_s);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.2 * 0.08, output.plan.com_m.x);
+}
+
+static void test_standing_has_no_plan_but_scores_the_measured_posture(void)
+{
+    input.command = (saddle_command_t){.mode = SADDLE_COMMAND_STAND};
+    tick_at(0);
+    const saddle_plan_t none = {.valid = false};
+    const saddle_output_t expected = {.plan = none, .scores = output.scores};
+    TEST_ASSERT_TRUE(same_output(&expected, &output));
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_VALID_MOS_COM | SADDLE_VALID_MOS_XCOM | SADDLE_VALID_GRAVITY,
+                            output.scores.valid);
+}
+
+static void test_init_again_starts_over_and_keeps_no_pointer(void)
+{
+    tick_at(0);
+    const saddle_output_t first = output;
+    for (uint64_t k = 1; k < 50; k++) {
+        tick_at(80000 * k);
+    }
+    TEST_ASSERT_FALSE(same_output(&first, &output));
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
+    memset(&config, 0, sizeof config); /* the context has its own copy */
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(0));
+    TEST_ASSERT_TRUE(same_output(&first, &output));
+}
+
+static void test_contexts_are_independent_and_deterministic(void)
+{
+    saddle_context_t one;
+    saddle_context_t two;
+    saddle_context_t alone;
+    saddle_output_t from_one;
+    saddle_output_t from_two;
+    saddle_output_t from_alone;
+    saddle_config_t child = saddle_config_default(1.2f, 25.0f);
+    saddle_init(&one, &config);
+    saddle_init(&two, &child);
+    saddle_init(&alone, &config);
+    for (uint64_t k = 0; k < 200; k++) {
+        const saddle_input_t adult_input = walking_input(80000 * k);
+        saddle_input_t child_input = walking_input(70000 * k);
+        child_input.command.speed_m_s = 0.6f;
+        saddle_tick(&one, &adult_input, &from_one);
+        saddle_tick(&two, &child_input, &from_two);
+        TEST_ASSERT_FALSE(same_output(&from_one, &from_two));
+    }
+    for (uint64_t k = 0; k < 200; k++) {
+        const saddle_input_t adult_input = walking_input(80000 * k);
+        saddle_tick(&alone, &adult_input, &from_alone);
+    }
+    TEST_ASSERT_TRUE(same_output(&from_one, &from_alone));
+}
+
+/* The model page's figures of the plan: min S_SW, and the share of time with the XCoM inside. */
+static void test_planned_walk_has_the_paper_s_stability(void)
+{
+    static const struct {
+        float speed;
+        double s_sw, xcom_inside;
+    } table[] = {{0.3f, 0.363, 0.76}, {0.5f, 0.363, 0.55}, {0.7f, 0.545, 0.41},
+                 {1.0f, 0.682, 0.0},  {1.2f, 0.735, 0.0},  {1.6f, 0.801, 0.0}};
+    for (size_t i = 0; i < COUNT_OF(table); i++) {
+        double lowest = 1.0;
+        int inside = 0;
+        int count = 0;
+        saddle_init(&context, &config);
+        input.command.speed_m_s = table[i].speed;
+        for (uint64_t t = 0; output.plan.stride_count < 1u || t < 100000u; t += 1000u) {
+            tick_at(t);
+            lowest = fmin(lowest, (double)output.plan_scores.s_sw);
+            inside += output.plan_scores.mos_xcom_m > 0.0f ? 1 : 0;
+            count++;
+            TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.0, output.plan_scores.s_pend);
+            TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.0, output.plan_scores.s_jump);
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(5e-4, table[i].s_sw, lowest);
+        TEST_ASSERT_DOUBLE_WITHIN(0.01, table[i].xcom_inside, (double)inside / count);
+    }
+}
+
+/* Any configuration that the check accepts. */
+static saddle_config_t random_config(uint32_t *state)
+{
+    for (;;) {
+        saddle_config_t random = paper_config();
+        for (size_t i = 0; saddle_config_field(i) != NULL; i++) {
+            const saddle_config_field_t *field = saddle_config_field(i);
+            const uint32_t choice = random_bits(state) % 8u;
+            if (choice < 4u) {
+                *config_field(&random, i) = random_in(state, field->min, field->max);
+            } else if (choice < 6u) {
+                *config_field(&random, i) = choice == 4u ? field->min : field->max;
+            }
+        }
+        random.ankle = (random_bits(state) & 1u) != 0u ? SADDLE_ANKLE_ERF : SADDLE_ANKLE_RIGID;
+        if (saddle_config_check(&random) == NULL) {
+            return random;
+        }
+    }
+}
+
+/* Any bits at all, or something plausible. */
+static float random_float(uint32_t *state, float max)
+{
+    const bool plausible = random_bits(state) % 4u != 0u;
+    const float any = float_of_bits(random_bits(state));
+    return plausible ? random_in(state, -max, max) : any;
+}
+
+static uint32_t random_age(uint32_t *state)
+{
+    const bool fresh = random_bits(state) % 4u != 0u;
+    return fresh ? random_bits(state) % 20000u : random_bits(state);
+}
+
+static void random_input(uint32_t *state, saddle_input_t *any)
+{
+    const uint32_t choice = random_bits(state) % 256u;
+    if (choice == 0u) {
+        any->time_us = ((uint64_t)random_bits(state) << 32) | random_bits(state);
+    } else if (choice < 10u) {
+        any->time_us -= random_bits(state) % 200000u;
+    } else {
+        any->time_us += random_bits(state) % 250000u;
+    }
+    if (choice % 32u == 1u) { /* a command stays for a while, so that walks go on */
+        any->command.mode = (uint8_t)(choice < 128u ? 1u : random_bits(state));
+        any->command.speed_m_s = random_float(state, 3.0f);
+        any->command.heel_strike_rad = random_float(state, 0.6f);
+    }
+    any->measurement.com.height_m = random_float(state, 2.5f);
+    any->measurement.com.velocity_m_s.x = random_float(state, 6.0f);
+    any->measurement.com.velocity_m_s.y = random_float(state, 2.0f);
+    any->measurement.com.age_us = random_age(state);
+    for (int side = 0; side < 2; side++) {
+        any->measurement.foot[side].cop_m.x = random_float(state, 1.0f);
+        any->measurement.foot[side].cop_m.y = random_float(state, 0.3f);
+        any->measurement.foot[side].contact = random_bits(state) % 2u != 0u;
+        any->measurement.foot[side].age_us = random_age(state);
+    }
+}
+
+static void assert_sound(const saddle_output_t *o)
+{
+    const saddle_plan_t *plan = &o->plan;
+    TEST_ASSERT_TRUE(finite_output(o));
+    TEST_ASSERT_TRUE(o->status == SADDLE_OK || o->status == SADDLE_ERROR_TIME);
+    TEST_ASSERT_TRUE(o->limits < 1u << 5);
+    TEST_ASSERT_TRUE(o->faults < 1u << 9);
+    TEST_ASSERT_TRUE(o->scores.valid <= (uint32_t)SADDLE_VALID_ALL);
+    TEST_ASSERT_TRUE(o->plan_scores.valid <= (uint32_t)SADDLE_VALID_ALL);
+    TEST_ASSERT_TRUE(plan->phase <= 3u && plan->support <= 1u);
+    if (!plan->valid) {
+        return;
+    }
+    TEST_ASSERT_TRUE(plan->theta_rad >= 0.0f && (double)plan->theta_rad < 2.0 * PI);
+    TEST_ASSERT_TRUE(plan->speed_m_s >= SADDLE_SPEED_FLOOR_M_S);
+    TEST_ASSERT_TRUE(plan->com_m.z > 0.0f);
+    TEST_ASSERT_TRUE(plan->time_to_heel_strike_s > 0.0f);
+    TEST_ASSERT_TRUE(plan->origin_x_nm >= 0);
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_VALID_ALL, o->plan_scores.valid);
+}
+
+static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
+{
+    uint32_t state = 2026;
+    int valid_plans = 0;
+    int valid_scores = 0;
+    int refused = 0;
+    for (int k = 0; k < 100000; k++) {
+        if (k % 200 == 0) {
+            config = random_config(&state);
+            TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
+            input = walking_input(random_bits(&state));
+        }
+        random_input(&state, &input);
+        prefill();
+        const saddle_status_t status = saddle_tick(&context, &input, &output);
+        TEST_ASSERT_EQUAL_INT(status, output.status);
+        assert_sound(&output);
+        valid_plans += output.plan.valid ? 1 : 0;
+        valid_scores += (output.scores.valid & SADDLE_VALID_MOS_XCOM) != 0u ? 1 : 0;
+        refused += output.status != SADDLE_OK ? 1 : 0;
+    }
+    /* The bytes are hostile, but not so hostile that nothing is computed. */
+    TEST_ASSERT_GREATER_THAN_INT(20000, valid_plans);
+    TEST_ASSERT_GREATER_THAN_INT(5000, valid_scores);
+    TEST_ASSERT_GREATER_THAN_INT(1000, refused);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_field_list_is_complete);
+    RUN_TEST(test_null_arguments_are_refused_with_a_complete_output);
+    RUN_TEST(test_tick_without_an_output_changes_nothing);
+    RUN_TEST(test_context_without_init_is_refused_with_a_complete_output);
+    RUN_TEST(test_failed_init_leaves_the_context_refused);
+    RUN_TEST(test_good_tick_writes_every_field);
+    RUN_TEST(test_time_backwards_is_refused_and_forgotten);
+    RUN_TEST(test_plan_advances_by_the_time_that_passed_from_any_origin);
+    RUN_TEST(test_late_tick_advances_by_tick_max_and_says_so);
+    RUN_TEST(test_unusable_command_leaves_the_last_good_one);
+    RUN_TEST(test_standing_has_no_plan_but_scores_the_measured_posture);
+    RUN_TEST(test_init_again_starts_over_and_keeps_no_pointer);
+    RUN_TEST(test_contexts_are_independent_and_deterministic);
+    RUN_TEST(test_planned_walk_has_the_paper_s_stability);
+    RUN_TEST(test_any_bytes_in_any_configuration_give_a_sound_output);
+    return UNITY_END();
+}
