@@ -127,6 +127,22 @@ static void test_half_step_out_of_reach_is_named(void)
     TEST_ASSERT_NULL(saddle_config_check(&config));
 }
 
+/* A reach of 36.58 mm: 1.05 x the intercept fits, 1.05 x the half step at 0.02 m/s does not. */
+static void test_configuration_without_a_feasible_walk_is_named(void)
+{
+    config.body_height_m = 0.7f;
+    config.pendulum_ratio = 0.3f;
+    config.peak_speed_m_s = 0.5f;
+    config.step_width_slow_m = 0.1f;
+    config.step_width_slope_s = 0.0f;
+    config.step_width_intercept_m = 0.1f;
+    config.half_step_slope_s = 1.0f;
+    config.half_step_intercept_m = 0.0348f;
+    TEST_ASSERT_EQUAL_STRING("half_step_intercept_m", saddle_config_check(&config));
+    config.half_step_intercept_m = 0.0148f;
+    TEST_ASSERT_NULL(saddle_config_check(&config));
+}
+
 static void test_reach_that_lays_the_pendulum_flat_is_named(void)
 {
     config.peak_speed_m_s = 5.0f; /* reach 0.806 m: with 0.22 m across, 0.698 of 0.833 m^2 */
@@ -148,6 +164,7 @@ int main(void)
     RUN_TEST(test_width_thresholds_in_the_wrong_order_are_named);
     RUN_TEST(test_width_that_falls_below_a_centimetre_is_named);
     RUN_TEST(test_half_step_out_of_reach_is_named);
+    RUN_TEST(test_configuration_without_a_feasible_walk_is_named);
     RUN_TEST(test_reach_that_lays_the_pendulum_flat_is_named);
     return UNITY_END();
 }

@@ -4,6 +4,9 @@
 
 #define WIDTH_MIN_M 0.01f
 
+/* Some walk must be feasible: the ceiling lies above this speed, twice the planner's floor. */
+#define CEILING_MIN_M_S 0.02f
+
 #define FIELD(name, min, max) {#name, offsetof(saddle_config_t, name), min, max}
 
 static const saddle_config_field_t FIELDS[] = {
@@ -97,7 +100,8 @@ static const char *check_reach(const saddle_config_t *config)
     const float pendulum_m = config->pendulum_ratio * config->body_height_m;
     const float reach_m2 = config->peak_speed_m_s * config->peak_speed_m_s * pendulum_m /
                            (4.0f * SADDLE_GRAVITY_M_S2);
-    const float shortest_m = 1.05f * config->half_step_intercept_m;
+    const float shortest_m =
+        1.05f * (config->half_step_slope_s * CEILING_MIN_M_S + config->half_step_intercept_m);
     const float width_m =
         larger(larger(config->step_width_slow_m, config->step_width_fast_m),
                larger(sloped_width_m(config, config->step_width_slow_speed_m_s),
