@@ -117,6 +117,18 @@ def test_lockstep_answers_each_set_with_one_tick():
         assert host.stop().startswith("40 ticks, 0 late; frames: 121 accepted")
 
 
+def test_frames_of_two_instants_are_no_set():
+    with lockstep() as host:
+        first = {name: host.sender.frame(name, **values) for name, values in STANDING.items()}
+        second = {name: host.sender.frame(name, **values) for name, values in STANDING.items()}
+        host.bus.send(first["MEASURED_COM"])
+        host.bus.send(second["MEASURED_LEFT"])
+        host.bus.send(second["MEASURED_RIGHT"])
+        assert host.tick_frames(SILENCE_S) == []
+        host.bus.send(second["MEASURED_COM"])
+        assert len(host.tick()) == MESSAGES_PER_TICK
+
+
 def random_sets(seed: int):
     rng = random.Random(seed)
     while True:
