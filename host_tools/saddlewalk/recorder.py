@@ -44,7 +44,7 @@ class Recorder(Observer):
         self.frames = self.rows = self.lcm_messages = 0
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            self._csv_file = self.csv_path.open("w", newline="", buffering=1)
+            self._csv_file = self.csv_path.open("w", newline="")
             self._can_log = can.CanutilsLogWriter(self.can_path, channel="saddlewalk")
             self._lcm_log = lcm.EventLog(str(self.lcm_path), "w", overwrite=True)
         except OSError as error:

@@ -1,20 +1,24 @@
 """`saddlewalk demo` and `emulate` end to end, with the real firmware process on private ports."""
 
 import csv
+import math
 import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import can
 import lcm
 import pytest
 
+from saddlewalk.bus import open_bus
 from saddlewalk.cli import main
 from saddlewalk.emulator import STEP_S
-from saddlewalk.exoskeleton import TICK_S
+from saddlewalk.exoskeleton import TICK_S, TickReader, plan_of
 from saddlewalk.playback import private_udp
 from saddlewalk.recorder import CHANNELS, COLUMNS
+from saddlewalk.wire import Sender
 
 FILES = {"walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"}
 
@@ -26,6 +30,48 @@ def ports() -> list[str]:
         probe.bind(("", 0))
         port = probe.getsockname()[1]
     return ["--can", private_udp(), "--lcm", f"udpm://239.255.76.67:{port}?ttl=0"]
+
+
+def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
+    """All frames of one tick of a walk; changed: signals of PLAN_COM."""
+    values = {
+        "PLAN_COM": {"X": 0.0, "Y": 0.01, "Z": 1.0} | changed,
+        "PLAN_COM_VELOCITY": {"VX": 1.2, "VY": 0.0, "VZ": 0.0},
+        "PLAN_LEFT": {"X": 0.0, "Y": 0.05, "Z": 0.0},
+        "PLAN_RIGHT": {"X": 0.0, "Y": -0.05, "Z": 0.05},
+        "PLAN_SWING": {"VX": 2.4, "VZ": 0.0, "TIME_TO_HEEL_STRIKE": 0.3},
+        "PLAN_LANDING": {"X": 0.7, "Y": -0.05, "LEG_LENGTH": 1.02},
+        "PLAN_ANKLE": {"TOE_OFF": 0.0, "HEEL_STRIKE": 0.0, "SPEED": 1.2},
+        "PLAN_STEP": {
+            "VALID": 1,
+            "SUPPORT": 0,
+            "PHASE": 0,
+            "THETA": 0,
+            "STEP_LENGTH": 0.7,
+            "STEP_COUNT": 7,
+        },
+        "SCORES_STEP": {"S_PEND": 1.0, "S_JUMP": 1.0, "S_SW": 1.0},
+        "SCORES_MARGIN": {"MOS_COM": 0.1, "MOS_XCOM": 0.1, "V_COMP": 1.2},
+        "SCORES_FORCE": {"GRAVITY_X": 0.0, "GRAVITY_Y": 0.0, "FAULTS": 0},
+        "HEALTH": {"STATUS": 0, "LIMITS": 0, "LATE_TICKS": 0, "REJECTED_FRAMES": 0},
+    }
+    return [sender.frame(name, **signals) for name, signals in values.items()]
+
+
+@pytest.mark.parametrize("lost", range(12))
+def test_a_tick_with_a_lost_frame_is_not_used(lost):
+    sender, reader = Sender(), TickReader()
+    first, second, third = (tick_frames(sender) for _ in range(3))
+    assert [reader.feed(frame) is not None for frame in first] == [False] * 11 + [True]
+    assert not any(reader.feed(frame) for frame in second[:lost] + second[lost + 1 :])
+    heard = [reader.feed(frame) for frame in third]
+    assert plan_of(heard[-1]).step_count == 7 and not any(heard[:-1])
+
+
+def test_a_plan_with_a_number_that_is_not_available_is_no_plan():
+    sender, reader = Sender(), TickReader()
+    heard = [reader.feed(frame) for frame in tick_frames(sender, Y=math.nan)]
+    assert plan_of(heard[-1]) is None
 
 
 def demo(folder: Path, ports: list[str], *options: str) -> int:
@@ -95,10 +141,19 @@ def test_demo_in_real_time(tmp_path, ports):
 def test_demo_refuses_a_bus_on_which_somebody_walks(tmp_path, ports, capsys):
     from saddlewalk.host import running_host
 
-    with running_host(f"--can={ports[1]}", "--lcm=none"):
-        assert demo(tmp_path, ports, "--duration", "1") == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and "busy with another walk" in told
+    assert demo(tmp_path, ports, "--duration", "1") == 0
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    capsys.readouterr()
+    other_can = private_udp()
+    for options in (
+        [f"--can={ports[1]}", "--lcm=none"],
+        [f"--can={other_can}", f"--lcm={ports[3]}"],
+    ):
+        with running_host(*options):
+            assert demo(tmp_path, ports, "--duration", "1") == 2
+        told = capsys.readouterr().err
+        assert told.count("\n") == 1 and "busy with another walk" in told
+    assert before == {path: path.read_bytes() for path in tmp_path.iterdir()}
 
 
 def test_demo_says_where_it_cannot_write(tmp_path, ports, capsys):
@@ -168,3 +223,23 @@ def test_emulate_ends_with_status_1_after_a_fall(ports, capsys):
         assert "fell" in capsys.readouterr().out
         # The same firmware, still running, takes another wearer.
         assert main(walk) == 0
+
+
+def test_demo_that_is_ended_keeps_its_logs_and_ends_the_firmware(tmp_path, ports):
+    script = Path(sys.executable).with_name("saddlewalk")
+    program = [str(script), "demo", "--out", str(tmp_path), *ports]
+    with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as process:
+        while "walking" not in process.stdout.readline():
+            assert process.poll() is None
+        time.sleep(0.5)
+        process.terminate()
+        process.communicate(timeout=10)
+        assert process.returncode == 130
+    assert len(rows(tmp_path)) >= 4
+    with can.CanutilsLogReader(tmp_path / "walk.candump.log") as log:
+        assert sum(1 for _ in log) >= 4 * 12
+    log = lcm.EventLog(str(tmp_path / "walk.lcmlog"), "r")
+    assert {event.channel for event in log} == {*CHANNELS, "SADDLEWALK_COMMAND"}
+    log.close()
+    with open_bus(ports[1]) as bus:
+        assert bus.recv(3 * TICK_S) is None

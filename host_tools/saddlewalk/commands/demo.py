@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import signal
 import sys
 import time
 from collections.abc import Iterator
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
     from saddlewalk.exoskeleton import Exoskeleton
     from saddlewalk.recorder import Recorder
 
-PUSH = "8@8:90"
+PUSH_TIME_S = 8
+PUSH = f"8@{PUSH_TIME_S}:90"
 REFRESH_S = 0.2
 LINE_S = 2.0
 LISTEN_S = 0.25
@@ -32,60 +34,68 @@ LATE_SHARE_MAX = 0.05
 
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser("demo", help="firmware and wearer walk; picture and logs")
-    parser.add_argument("--out", type=Path, default=Path("out/demo"), metavar="FOLDER")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("out/demo"),
+        metavar="FOLDER",
+        help="for the picture and the logs (default out/demo)",
+    )
     add_walk_options(parser, clock="realtime", pushes=(PUSH,))
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk import private_network
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the firmware, close the logs
+    if args.push is None and args.duration > PUSH_TIME_S:
+        args.push = [push_text(PUSH)]
+    lcm = _open_lcm(args.lcm)
     from saddlewalk.bus import describe, open_bus
+    from saddlewalk.emulator import Noise
+    from saddlewalk.exoskeleton import Exoskeleton
     from saddlewalk.host import running_host
-    from saddlewalk.lcmbus import open_lcm
-
-    args.push = args.push or [push_text(PUSH)]
-    try:
-        lcm = open_lcm(args.lcm)
-    except UserError:
-        if args.lcm or not private_network.possible():
-            raise
-        print("no multicast route: running in a private network of its own", flush=True)
-        private_network.enter()
     from saddlewalk.recorder import Recorder
 
-    options = [f"--can={args.can}", f"--clock={args.clock}"]
-    options += [f"--lcm={args.lcm}"] if args.lcm else []
-    with open_bus(args.can) as bus, Recorder(args.out, lcm) as recorder:
-        _refuse_company(bus, recorder)
-        print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
-        with running_host(*options):
-            wearer, exoskeleton = _walk(args, bus, lcm, recorder)
+    wearer = wearer_of(args, Noise())
+    host_options = [f"--can={args.can}", f"--clock={args.clock}"]
+    host_options += [f"--lcm={args.lcm}"] if args.lcm else []
+    with open_bus(args.can) as bus:
+        _refuse_company(bus, lcm)
+        with Recorder(args.out, lcm) as recorder, running_host(*host_options):
+            print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
+            with _display(lcm) as display:
+                observers = [recorder, events_printer(wearer), display]
+                exoskeleton = Exoskeleton(bus, wearer, command_of(args), lcm, observers)
+                exoskeleton.run(args.clock, args.duration)
     return _finish(args.out, wearer, exoskeleton, recorder)
 
 
-def _refuse_company(bus: Any, recorder: "Recorder") -> None:
-    """Another walk on the same bus would be mixed into this one."""
+def _open_lcm(url: str | None) -> Any:
+    """LCM; without a route for the default URL, in a private network, where run() starts anew."""
+    from saddlewalk import private_network
+    from saddlewalk.lcmbus import open_lcm
+
+    try:
+        return open_lcm(url)
+    except UserError:
+        if url or not private_network.possible():
+            raise
+        print("no multicast route: running in a private network of its own", flush=True)
+        private_network.enter()
+
+
+def _refuse_company(bus: Any, lcm: Any) -> None:
+    """Another walk on the same buses would be mixed into this one. Before anything is written."""
+    heard: list[str] = []
+    subscription = lcm.subscribe("SADDLEWALK_.*", lambda channel, _: heard.append(channel))
     if bus.recv(LISTEN_S) is not None:
+        heard.append(str(bus.channel_info))
+    lcm.handle_timeout(0)
+    lcm.unsubscribe(subscription)
+    if heard:
         raise UserError(
-            f"{bus.channel_info} is busy with another walk: end it, or give other --can and --lcm"
+            f"{heard[-1]} is busy with another walk: end it, or give other --can and --lcm"
         )
-    recorder.poll()
-    if recorder.lcm_messages:
-        raise UserError("LCM carries another walk already: end it, or give other --can and --lcm")
-
-
-def _walk(
-    args: argparse.Namespace, bus: Any, lcm: Any, recorder: "Recorder"
-) -> "tuple[Wearer, Exoskeleton]":
-    from saddlewalk.emulator import Noise
-    from saddlewalk.exoskeleton import Exoskeleton
-
-    wearer = wearer_of(args, Noise())
-    with _display(lcm) as display:
-        observers = [recorder, events_printer(wearer), display]
-        exoskeleton = Exoskeleton(bus, wearer, command_of(args), lcm, observers)
-        exoskeleton.run(args.clock, args.duration)
-    return wearer, exoskeleton
 
 
 @contextlib.contextmanager

@@ -4,6 +4,7 @@ import argparse
 import math
 from typing import TYPE_CHECKING, Any
 
+from saddlewalk.errors import UserError
 from saddlewalk.options import number_in, whole_number_in
 
 if TYPE_CHECKING:
@@ -40,7 +41,13 @@ def add_walk_options(parser: argparse.ArgumentParser, clock: str, pushes: tuple[
         default=clock,
         help=f"the wall clock, or as fast as the firmware answers (default {clock})",
     )
-    parser.add_argument("--speed", type=number_in(1e-3, 10, "m/s"), default=1.2, metavar="M/S")
+    parser.add_argument(
+        "--speed",
+        type=number_in(1e-3, 10, "m/s"),
+        default=1.2,
+        metavar="M/S",
+        help="asked of the planner (default 1.2)",
+    )
     parser.add_argument(
         "--hs-angle",
         type=number_in(0, 30, "degrees"),
@@ -49,7 +56,11 @@ def add_walk_options(parser: argparse.ArgumentParser, clock: str, pushes: tuple[
         help="foot angle at heel strike (default 10)",
     )
     parser.add_argument(
-        "--duration", type=number_in(0.08, DURATION_MAX_S, "s"), default=20.0, metavar="S"
+        "--duration",
+        type=number_in(0.08, DURATION_MAX_S, "s"),
+        default=20.0,
+        metavar="S",
+        help="of the walk (default 20)",
     )
     parser.add_argument(
         "--push",
@@ -58,7 +69,13 @@ def add_walk_options(parser: argparse.ArgumentParser, clock: str, pushes: tuple[
         metavar="N.S@S:DEG",
         help="impulse at a time in a direction, 0 forward, 90 to the left; repeatable" + default,
     )
-    parser.add_argument("--seed", type=whole_number_in(0, 2**32 - 1), default=0, metavar="N")
+    parser.add_argument(
+        "--seed",
+        type=whole_number_in(0, 2**32 - 1),
+        default=0,
+        metavar="N",
+        help="of everything random (default 0)",
+    )
 
 
 def push_text(text: str) -> tuple[float, float, float]:
@@ -99,6 +116,12 @@ def wearer_of(args: argparse.Namespace, noise: Any) -> "Wearer":
     from saddlewalk.emulator import Push, Wearer
 
     pushes = tuple(Push(*push) for push in args.push or ())
+    for push in pushes:
+        if push.time_s >= args.duration:
+            raise UserError(
+                f"--push at {push.time_s:g} s: give a time before the end, --duration "
+                f"{args.duration:g} s"
+            )
     return Wearer(noise=noise, pushes=pushes, seed=args.seed)
 
 
