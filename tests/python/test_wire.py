@@ -9,6 +9,7 @@ import can
 import numpy as np
 import pytest
 from cffi import FFI
+
 from saddlewalk import paths, wire
 
 SEED = 20261122
