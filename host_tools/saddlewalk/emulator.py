@@ -251,7 +251,9 @@ class Wearer:
         self._steady = SteadyStep(self.body, plan.step_length_m, width_m, plan.step_s)
         if not self._started:
             self._start(plan)
-        elif before is not None:
+        elif before is None:  # walks on after a gap, from where the foot stands
+            self._origin_m = self.feet[plan.support].position_m.real
+        else:
             heel_strikes = (plan.step_count - before.step_count) % 65536
             self._origin_m += heel_strikes * plan.step_length_m
         if not self.feet[plan.support].contact:

@@ -266,6 +266,10 @@ def test_a_lost_plan_ends_the_walk_and_the_wearer_puts_both_feet_down():
     for _ in range(3):
         wearer.step()
     assert wearer.feet[LEFT].contact and wearer.feet[RIGHT].contact
+    for _ in range(50):
+        plan = planner.next()
+    wearer.follow(plan)
+    assert wearer.origin_m == wearer.feet[plan.support].position_m.real
 
 
 @pytest.mark.parametrize(
