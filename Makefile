@@ -29,7 +29,8 @@ define run_tests
 	@$(BIN)/python tests/summary.py $(1)/reports/ctest.xml $(1)/reports/pytest.xml
 endef
 
-SANITIZED = LD_PRELOAD="$$(gcc -print-file-name=libasan.so)" \
+# The sanitizer's runtime must come first, and C++'s before what throws in Python's extensions.
+SANITIZED = LD_PRELOAD="$$(gcc -print-file-name=libasan.so) libstdc++.so.6" \
 	LSAN_OPTIONS=suppressions=$(CURDIR)/tests/lsan.supp:print_suppressions=0
 
 samples: .venv/installed-samples ## recorded walks, for saddlewalk replay --sample
