@@ -350,7 +350,7 @@ static void test_usable_commands(void)
         {{SADDLE_COMMAND_WALK, -5.0f, -1.0f}, true}, {{SADDLE_COMMAND_WALK, 1e6f, 1e6f}, true},
         {{2, 1.2f, 0.1f}, false},                    {{255, 1.2f, 0.1f}, false},
         {{SADDLE_COMMAND_WALK, NAN, 0.1f}, false},   {{SADDLE_COMMAND_WALK, 1.2f, NAN}, false},
-        {{SADDLE_COMMAND_STAND, NAN, 0.0f}, false},  {{SADDLE_COMMAND_WALK, INFINITY, 0.1f}, false},
+        {{SADDLE_COMMAND_STAND, NAN, NAN}, true},    {{SADDLE_COMMAND_WALK, INFINITY, 0.1f}, false},
         {{SADDLE_COMMAND_WALK, 1.2f, -INFINITY}, false},
     };
     for (size_t i = 0; i < COUNT_OF(table); i++) {
@@ -411,6 +411,9 @@ static void test_toe_off_limit_is_said(void)
 static void test_change_of_command_is_held_until_the_next_walk(void)
 {
     tick(0.0f);
+    while (plan.step_count < 3u) {
+        tick(0.08f);
+    }
     command.speed_m_s = 0.8f;
     TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_COMMAND_HELD, tick(0.08f));
     ASSERT_SAME_FLOAT(1.2f, plan.speed_m_s);

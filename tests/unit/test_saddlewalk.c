@@ -262,6 +262,15 @@ static void test_unusable_command_leaves_the_last_good_one(void)
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.2 * 0.08, output.plan.com_m.x);
 }
 
+static void test_stop_is_obeyed_whatever_its_numbers(void)
+{
+    tick_at(0);
+    input.command = (saddle_command_t){SADDLE_COMMAND_STAND, NAN, INFINITY};
+    tick_at(80000);
+    TEST_ASSERT_EQUAL_HEX32(0, output.faults);
+    TEST_ASSERT_FALSE(output.plan.valid);
+}
+
 static void test_standing_has_no_plan_but_scores_the_measured_posture(void)
 {
     input.command = (saddle_command_t){.mode = SADDLE_COMMAND_STAND};
@@ -464,6 +473,7 @@ int main(void)
     RUN_TEST(test_plan_advances_by_the_time_that_passed_from_any_origin);
     RUN_TEST(test_late_tick_advances_by_tick_max_and_says_so);
     RUN_TEST(test_unusable_command_leaves_the_last_good_one);
+    RUN_TEST(test_stop_is_obeyed_whatever_its_numbers);
     RUN_TEST(test_standing_has_no_plan_but_scores_the_measured_posture);
     RUN_TEST(test_init_again_starts_over_and_keeps_no_pointer);
     RUN_TEST(test_contexts_are_independent_and_deterministic);

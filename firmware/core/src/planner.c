@@ -22,7 +22,10 @@ typedef struct {
 bool saddle_command_usable(const saddle_command_t *command)
 {
     const float finite_max = 1.0e6f;
-    return command->mode <= (uint8_t)SADDLE_COMMAND_WALK &&
+    if (command->mode == (uint8_t)SADDLE_COMMAND_STAND) {
+        return true;
+    }
+    return command->mode == (uint8_t)SADDLE_COMMAND_WALK &&
            saddle_in_range(command->speed_m_s, -finite_max, finite_max) &&
            saddle_in_range(command->heel_strike_rad, -finite_max, finite_max);
 }

@@ -19,9 +19,9 @@ typedef enum {
 /** What is asked of the planner. A walk keeps the speed and angle that it started with: another
  *  value is reported as SADDLE_LIMIT_COMMAND_HELD until the walk is ended and begun again. */
 typedef struct {
-    uint8_t mode; /**< saddle_command_mode_t */
-    float speed_m_s;
-    float heel_strike_rad;
+    uint8_t mode;          /**< saddle_command_mode_t; a stand does not need the numbers below */
+    float speed_m_s;       /**< along x */
+    float heel_strike_rad; /**< foot to ground when the heel strikes */
 } saddle_command_t;
 
 /** Limits that shaped an output. */
@@ -39,7 +39,7 @@ typedef struct {
     bool valid;             /**< false: no walk is planned and all else is 0 */
     uint8_t phase;          /**< 0 to 3: the quarter of the stride, from the left foot via point */
     uint8_t support;        /**< saddle_side_t */
-    uint32_t step_count;    /**< heel strikes since the start */
+    uint32_t step_count;    /**< changes of the stance foot since the start */
     uint32_t stride_count;  /**< whole turns of theta since the start */
     float theta_rad;        /**< gait phase within the stride, [0, 2 pi), [E8] */
     int64_t origin_x_nm;    /**< walked distance to the stance foot; integer, so it never drifts */
@@ -49,8 +49,10 @@ typedef struct {
     saddle_vec3_t swing_velocity_m_s;  /**< of the foot that is not in support */
     float leg_length_m;                /**< stance leg */
     float toe_off_rad, heel_strike_rad; /**< ankle angles, sole to ground */
-    float time_to_heel_strike_s;       /**< until the swing foot lands */
-    saddle_vec2_t landing_m;           /**< where it lands */
+    float time_to_heel_strike_s;       /**< > 0; until the saddle via point, where the swing CoP
+                                            arrives; the heel of [E12] touches d_h (1 - cos)/v
+                                            earlier */
+    saddle_vec2_t landing_m;           /**< where the swing CoP arrives */
 } saddle_plan_t;
 
 /** Planner state, about 80 bytes, part of the context. */
@@ -65,11 +67,12 @@ typedef struct {
     bool walking;
 } saddle_planner_t;
 
-/** True if the mode is known and the numbers are finite. */
+/** True for a stand, whatever its numbers, and for a walk with numbers within +-10^6. */
 bool saddle_command_usable(const saddle_command_t *command);
 
 /** Obey a usable command, then advance by dt_s in [0, tick_max_s] and write the plan.
- *  Returns saddle_limit_t bits. The tick that begins a walk plans theta = 0. */
+ *  Returns saddle_limit_t bits; those that shaped the start of a walk stay until it ends. The tick
+ *  that begins a walk plans theta = 0, whatever dt_s is. */
 uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_config_t *config,
                                const saddle_body_t *body, const saddle_command_t *command,
                                float dt_s, saddle_plan_t *plan);
