@@ -262,8 +262,12 @@ static void test_v_comp_is_the_planner_s_until_a_step_is_complete_then_the_mean(
     /* Trapezoids: (1.1/2 + 1.2 + 1.4 + 1.0 + 0.9 + 1.3/2) / 5. */
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.14, scores.v_comp_m_s);
     measured.com.velocity_m_s.x = 0.5f;
+    measured.foot[SADDLE_LEFT].contact = false;
     update();
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.14, scores.v_comp_m_s);
+    measured.foot[SADDLE_LEFT].contact = true;
+    update(); /* the second step: (1.3/2 + 0.5 + 0.5/2) / 2, nothing left over from the first */
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.7, scores.v_comp_m_s);
 }
 
 static void test_step_with_a_gap_in_the_velocity_gives_no_v_comp(void)
