@@ -47,7 +47,8 @@ typedef struct {
 saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg);
 
 /** Name of the first field that is not finite, out of range or at odds with the others;
- *  NULL when the configuration can be used. The text is constant and never freed. */
+ *  NULL when the configuration can be used. The text is constant and never freed.
+ *  config must not be NULL. */
 const char *saddle_config_check(const saddle_config_t *config);
 
 /** The float field at an index, NULL past the last. For hosts that set fields by name. */

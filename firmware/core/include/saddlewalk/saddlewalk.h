@@ -5,8 +5,9 @@
  *      saddle_init(&context, &config);
  *      every 80 ms:  saddle_tick(&context, &input, &output);
  *
- *  Nothing is kept of the pointers; nothing is shared between contexts; the same inputs give the
- *  same bits on every compiler and target that honours -ffp-contract=off. */
+ *  Nothing is kept of the pointers; nothing is shared between contexts, so each may run in a thread
+ *  of its own; the same inputs give the same bits on every compiler and target that honours
+ *  -ffp-contract=off. */
 #ifndef SADDLEWALK_SADDLEWALK_H
 #define SADDLEWALK_SADDLEWALK_H
 
@@ -24,7 +25,8 @@ typedef enum {
     SADDLE_ERROR_NULL = 1,          /**< an argument is NULL */
     SADDLE_ERROR_CONFIG = 2,        /**< saddle_config_check() names the field */
     SADDLE_ERROR_UNINITIALISED = 3, /**< saddle_init() has not succeeded on this context */
-    SADDLE_ERROR_TIME = 4           /**< time_us went backwards: no plan, no scores, state kept */
+    SADDLE_ERROR_TIME = 4           /**< time_us went backwards: no plan, no scores, state kept,
+                                         until it has caught up or saddle_init() starts over */
 } saddle_status_t;
 
 typedef struct {
@@ -59,8 +61,9 @@ typedef struct {
  *  uninitialised and every tick on it says so. May be called again at any time. */
 saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *config);
 
-/** One update. Writes all of *output on every path; on an error (its return value, also in
- *  output->status) nothing in it is valid. No loops over data: the cost hardly varies. */
+/** One update. Writes all of *output on every path, unless output is NULL; on an error (its return
+ *  value, also in output->status) nothing in it is valid. For the first tick after saddle_init() no
+ *  time has passed. No loops over data: the cost hardly varies. The three must not overlap. */
 saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
                             saddle_output_t *output);
 

@@ -11,7 +11,9 @@
 /** Age of a measurement that never came. */
 #define SADDLE_AGE_NEVER_US UINT32_MAX
 
-/** Each foot and the CoM have their own age: what is too old, not finite or absurd is not used. */
+/** Each foot and the CoM have their own age at the time of the tick. What is older than
+ *  measurement_max_age_s, not finite or absurd is not used: a CoM outside 0.1 to 2.5 m of height or
+ *  6 m/s along x or y, a CoP beyond 2.5 m along x or y. */
 typedef struct {
     struct {
         float height_m; /**< above the ground */
@@ -27,7 +29,7 @@ typedef struct {
 
 /** Why an input was not used or gave no score. */
 typedef enum {
-    SADDLE_FAULT_COMMAND = 1u << 0, /**< unknown mode or number not finite: the last good one holds */
+    SADDLE_FAULT_COMMAND = 1u << 0, /**< not usable: the last good one holds, see planner.h */
     SADDLE_FAULT_COM_STALE = 1u << 1,
     SADDLE_FAULT_COM_RANGE = 1u << 2, /**< not finite or absurd */
     SADDLE_FAULT_LEFT_STALE = 1u << 3,
@@ -38,7 +40,8 @@ typedef enum {
     SADDLE_FAULT_SPEED_INFEASIBLE = 1u << 8 /**< v_CoMp cannot be walked: no step scores */
 } saddle_fault_t;
 
-/** Which fields of saddle_scores_t hold a result; the others are 0. */
+/** Which fields of saddle_scores_t hold a result; the others are 0. xcom_m is known whenever the
+ *  velocity is, and bos says so itself (bos.defined). */
 typedef enum {
     SADDLE_VALID_V_COMP = 1u << 0,
     SADDLE_VALID_STEP = 1u << 1, /**< s_pend and s_jump */
