@@ -16,14 +16,11 @@ static float speed_ceiling_m_s(const saddle_config_t *config, const saddle_body_
 {
     const float xcom_slope_s = 0.5f / body->natural_frequency_rad_s;
     const float slope_s = config->half_step_slope_s;
-    float ceiling = config->peak_speed_m_s;
-    if (half_step_m(config, ceiling) > body->half_step_max_m) {
-        ceiling = (body->half_step_max_m - config->half_step_intercept_m) / slope_s;
+    const float reached_m_s = (body->half_step_max_m - config->half_step_intercept_m) / slope_s;
+    if (half_step_m(config, reached_m_s) < xcom_slope_s * reached_m_s) {
+        return config->half_step_intercept_m / (xcom_slope_s - slope_s);
     }
-    if (half_step_m(config, ceiling) < xcom_slope_s * ceiling) {
-        ceiling = config->half_step_intercept_m / (xcom_slope_s - slope_s);
-    }
-    return ceiling;
+    return reached_m_s;
 }
 
 saddle_body_t saddle_body(const saddle_config_t *config)
