@@ -401,6 +401,17 @@ static void test_heel_strike_angle_is_limited(void)
     }
 }
 
+static void test_limits_of_one_walk_end_with_it(void)
+{
+    command.speed_m_s = 3.0f;
+    command.heel_strike_rad = 1.0f;
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_SPEED | SADDLE_LIMIT_HEEL_STRIKE, tick(0.0f));
+    command.mode = SADDLE_COMMAND_STAND;
+    TEST_ASSERT_EQUAL_HEX32(0, tick(0.08f));
+    command = (saddle_command_t){SADDLE_COMMAND_WALK, 1.2f, 0.1f};
+    TEST_ASSERT_EQUAL_HEX32(0, tick(0.08f));
+}
+
 static void test_toe_off_limit_is_said(void)
 {
     config.cop_range_m = 0.01f;
@@ -452,6 +463,7 @@ int main(void)
     RUN_TEST(test_usable_commands);
     RUN_TEST(test_speed_is_limited_to_what_is_feasible);
     RUN_TEST(test_heel_strike_angle_is_limited);
+    RUN_TEST(test_limits_of_one_walk_end_with_it);
     RUN_TEST(test_toe_off_limit_is_said);
     RUN_TEST(test_change_of_command_is_held_until_the_next_walk);
     return UNITY_END();

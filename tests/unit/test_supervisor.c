@@ -284,6 +284,15 @@ static void test_step_with_a_gap_in_the_velocity_gives_no_v_comp(void)
     ASSERT_SAME_FLOAT(1.1f, scores.v_comp_m_s);
 }
 
+static void test_step_that_begins_without_a_velocity_gives_no_v_comp(void)
+{
+    measured.com.age_us = SADDLE_AGE_NEVER_US;
+    strike_with(SADDLE_LEFT);
+    measured.com.age_us = 0;
+    strike_with(SADDLE_RIGHT);
+    TEST_ASSERT_FALSE(supervisor.v_comp_known);
+}
+
 static void test_speed_that_cannot_be_walked_is_said(void)
 {
     const float speeds[] = {-0.5f, 0.0f, 2.5f};
@@ -307,6 +316,15 @@ static void test_nobody_walking_and_nothing_planned_has_no_speed(void)
     TEST_ASSERT_EQUAL_HEX32(
         SADDLE_VALID_MOS_COM | SADDLE_VALID_MOS_XCOM | SADDLE_VALID_GRAVITY, scores.valid);
     ASSERT_SAME_FLOAT(0.0f, scores.v_comp_m_s);
+}
+
+static void test_walk_goes_on_having_a_speed_when_nothing_is_planned(void)
+{
+    strike_with(SADDLE_LEFT);
+    strike_with(SADDLE_RIGHT);
+    saddle_supervisor_update(&supervisor, &config, &body, &measured, DT_S, 0.0f, &scores);
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_VALID_ALL, scores.valid);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.1, scores.v_comp_m_s);
 }
 
 /* Each result needs exactly what it is made of; what is not known holds NaN and is not read. */
@@ -366,8 +384,10 @@ int main(void)
     RUN_TEST(test_strike_during_an_outage_is_seen_when_the_foot_is_back);
     RUN_TEST(test_v_comp_is_the_planner_s_until_a_step_is_complete_then_the_mean);
     RUN_TEST(test_step_with_a_gap_in_the_velocity_gives_no_v_comp);
+    RUN_TEST(test_step_that_begins_without_a_velocity_gives_no_v_comp);
     RUN_TEST(test_speed_that_cannot_be_walked_is_said);
     RUN_TEST(test_nobody_walking_and_nothing_planned_has_no_speed);
+    RUN_TEST(test_walk_goes_on_having_a_speed_when_nothing_is_planned);
     RUN_TEST(test_validity_follows_from_what_is_known);
     RUN_TEST(test_com_out_of_the_pendulum_s_reach_has_no_gravity);
     return UNITY_END();
