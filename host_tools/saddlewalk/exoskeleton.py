@@ -10,20 +10,14 @@ import can
 
 from saddlewalk.emulator import LEFT, RIGHT, STEP_S, Measurement, Plan, Wearer
 from saddlewalk.errors import UserError
-from saddlewalk.wire import Receiver, Sender
+from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages, TickReader, next_tick
+from saddlewalk.wire import Sender
 
-TICK_S = 0.08  # of the firmware
 WAKE_UP_S = 0.01  # realtime: measurements at 100 Hz
 SILENCE_S = 3.0
 RESEND_S = 0.25
 
 MODE_STAND, MODE_WALK = 0, 1
-PLAN_MESSAGES = (
-    "PLAN_COM PLAN_COM_VELOCITY PLAN_LEFT PLAN_RIGHT PLAN_SWING PLAN_LANDING PLAN_ANKLE PLAN_STEP"
-).split()
-TICK_MESSAGES = {*PLAN_MESSAGES, "SCORES_STEP", "SCORES_MARGIN", "SCORES_FORCE", "HEALTH"}
-
-Messages = dict[str, dict[str, float]]
 
 
 @dataclass(frozen=True)
@@ -79,28 +73,6 @@ def plan_of(messages: Messages) -> Plan | None:
     )
 
 
-class TickReader:
-    """Gathers the frames of a tick, of which HEALTH is the last."""
-
-    def __init__(self) -> None:
-        self.receiver = Receiver()
-        self._latest: Messages = {}
-
-    def feed(self, frame: can.Message) -> Messages | None:
-        """All messages of a tick once they have come; None before, and if one was lost."""
-        accepted = self.receiver.accept(frame)
-        if accepted is None:
-            return None
-        name, signals = accepted
-        self._latest[name] = signals
-        if name != "HEALTH":
-            return None
-        messages, self._latest = self._latest, {}
-        counters = {part["COUNTER"] for name, part in messages.items() if name in TICK_MESSAGES}
-        whole = messages.keys() >= TICK_MESSAGES and len(counters) == 1
-        return messages if whole else None
-
-
 class Exoskeleton:
     """Sends the wearer's measurements, follows the plan that comes back, publishes the truth.
 
@@ -150,17 +122,16 @@ class Exoskeleton:
         while self._wearer.time_s < duration_s - STEP_S / 2:
             if wake_up % round(TICK_S / WAKE_UP_S) == 0:
                 self._publish_command()
-            if self._receive():
-                heard_s = time.monotonic()
-            elif time.monotonic() - heard_s > SILENCE_S:
-                raise self._silent()
             self._advance(round(WAKE_UP_S / STEP_S))
             self._send_measurement()
             self._publish_truth()
             self._poll()
             wake_up += 1
             deadline_s += WAKE_UP_S
-            time.sleep(max(0.0, deadline_s - time.monotonic()))
+            if self._receive_until(deadline_s):
+                heard_s = time.monotonic()
+            elif time.monotonic() - heard_s > SILENCE_S:
+                raise self._silent()
         self._mode = MODE_STAND
         self._publish_command()
 
@@ -181,28 +152,17 @@ class Exoskeleton:
         while time.monotonic() < deadline_s:
             self._send_command_frame()
             self._send_measurement()
-            messages = self._answer(patience_s)
+            messages = next_tick(self._bus, self._hear, patience_s)
             if messages:
                 return messages
         raise self._silent()
 
-    def _answer(self, patience_s: float) -> Messages | None:
-        deadline_s = time.monotonic() + patience_s
-        while (left_s := deadline_s - time.monotonic()) > 0:
-            frame = self._bus.recv(left_s)
-            messages = self._hear(frame) if frame else None
-            if messages:
-                return messages
-        return None
-
-    def _receive(self) -> bool:
-        """Take what has come; True if a whole tick was among it."""
+    def _receive_until(self, deadline_s: float) -> bool:
+        """Take the ticks that come by then; True if one did."""
         ticked = False
-        while frame := self._bus.recv(0):
-            messages = self._hear(frame)
-            if messages:
-                self._take(messages)
-                ticked = True
+        while messages := next_tick(self._bus, self._hear, deadline_s - time.monotonic()):
+            self._take(messages)
+            ticked = True
         return ticked
 
     def _hear(self, frame: can.Message) -> Messages | None:

@@ -2,30 +2,20 @@
 
 import contextlib
 import math
-import socket
 import time
 from collections.abc import Iterator
 
 import can
 import numpy as np
 
-from saddlewalk.bus import DEFAULT_GROUP
 from saddlewalk.errors import UserError
 from saddlewalk.recording import Recording
-from saddlewalk.wire import Receiver, Sender
+from saddlewalk.ticks import SCORE_MESSAGES, TICK_S, Messages, TickReader, next_tick
+from saddlewalk.wire import Sender
 
-TICK_S = 0.08
 ANSWER_TIMEOUT_S = 2.0
 
 Signals = dict[str, float]
-Messages = dict[str, Signals]
-
-
-def private_udp() -> str:
-    """A UDP bus on a port that nobody uses now."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("", 0))
-        return f"udp:{DEFAULT_GROUP}:{probe.getsockname()[1]}"
 
 
 def measurements(recording: Recording, contact: np.ndarray) -> Iterator[tuple[float, Messages]]:
@@ -57,38 +47,24 @@ def measurements(recording: Recording, contact: np.ndarray) -> Iterator[tuple[fl
         )
 
 
-class TickReader:
-    """Gathers the frames of a tick; HEALTH is its last."""
-
-    SCORES = ("SCORES_STEP", "SCORES_MARGIN", "SCORES_FORCE")
-
-    def __init__(self) -> None:
-        self._receiver = Receiver()
-        self._latest: dict[str, Signals] = {}
-
-    def feed(self, frame: can.Message) -> Signals | None:
-        """The scores of a tick once all of it has come. A tick with a lost frame gives none."""
-        accepted = self._receiver.accept(frame)
-        if accepted is None:
-            return None
-        name, signals = accepted
-        self._latest[name] = signals
-        if name != "HEALTH":
-            return None
-        tick = [self._latest.get(part) for part in self.SCORES]
-        if any(part is None or part["COUNTER"] != signals["COUNTER"] for part in tick):
-            return None
-        return {name: value for part in tick for name, value in part.items()}
-
-
 def play_lockstep(
     bus: can.BusABC, sets: Iterator[tuple[float, Messages]]
 ) -> Iterator[tuple[float, Signals]]:
-    """Send each set once the one before is answered; yields (time of the set, its scores)."""
+    """Send each set once the one before is answered; yields (time of the set, its scores).
+
+    Raises UserError when no answer comes.
+    """
     sender, reader = Sender(), TickReader()
-    for time_s, messages in sets:
-        _send(bus, sender, messages)
-        yield time_s, _answer(bus, reader, time_s)
+    for time_s, measured in sets:
+        _send(bus, sender, measured)
+        messages = next_tick(bus, reader.feed, ANSWER_TIMEOUT_S)
+        if messages is None:
+            raise UserError(
+                f"the firmware did not answer the measurements at {time_s:.2f} s in "
+                f"{ANSWER_TIMEOUT_S:g} s: {reader.receiver.accepted} frames came whole, "
+                f"{reader.receiver.rejected} were refused"
+            )
+        yield time_s, _scores(messages)
 
 
 def play_realtime(
@@ -97,13 +73,11 @@ def play_realtime(
     """Send each set when it is due; yields (time of the latest set, scores as they come)."""
     sender, reader = Sender(), TickReader()
     start_s = time.monotonic()
-    for time_s, messages in sets:
-        _send(bus, sender, messages)
-        while (left_s := start_s + time_s + TICK_S - time.monotonic()) > 0:
-            frame = bus.recv(left_s)
-            scores = reader.feed(frame) if frame else None
-            if scores:
-                yield time_s, scores
+    for time_s, measured in sets:
+        _send(bus, sender, measured)
+        due_s = start_s + time_s + TICK_S
+        while messages := next_tick(bus, reader.feed, due_s - time.monotonic()):
+            yield time_s, _scores(messages)
 
 
 def _send(bus: can.BusABC, sender: Sender, messages: Messages) -> None:
@@ -113,13 +87,5 @@ def _send(bus: can.BusABC, sender: Sender, messages: Messages) -> None:
             bus.send(sender.frame(name, **signals))
 
 
-def _answer(bus: can.BusABC, reader: TickReader, time_s: float) -> Signals:
-    deadline_s = time.monotonic() + ANSWER_TIMEOUT_S
-    while (left_s := deadline_s - time.monotonic()) > 0:
-        frame = bus.recv(left_s)
-        scores = reader.feed(frame) if frame else None
-        if scores:
-            return scores
-    raise UserError(
-        f"the firmware did not answer the measurements at {time_s:.2f} s in {ANSWER_TIMEOUT_S:g} s"
-    )
+def _scores(messages: Messages) -> Signals:
+    return {name: value for part in SCORE_MESSAGES for name, value in messages[part].items()}

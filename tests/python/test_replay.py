@@ -16,12 +16,25 @@ from saddlewalk.commands.replay import SCORE_COLUMNS
 from saddlewalk.core import Command, Core, Measurement, ffi, library
 from saddlewalk.errors import UserError
 from saddlewalk.gait_events import analyse
-from saddlewalk.playback import TickReader, measurements, play_lockstep, play_realtime
+from saddlewalk.playback import measurements, play_lockstep, play_realtime
+from saddlewalk.ticks import TICK_S, Messages
 from saddlewalk.wire import Receiver, Sender
 from synthetic_walk import Walk, csv_text
 
 HEIGHT_M, MASS_KG = 1.79, 63.3
-SCORES = ("SCORES_STEP", "SCORES_MARGIN", "SCORES_FORCE")
+NO_PLAN = {
+    name: dict.fromkeys(signals.split(), 0.0)
+    for name, signals in {
+        "PLAN_COM": "X Y Z",
+        "PLAN_COM_VELOCITY": "VX VY VZ",
+        "PLAN_LEFT": "X Y Z",
+        "PLAN_RIGHT": "X Y Z",
+        "PLAN_SWING": "VX VZ TIME_TO_HEEL_STRIKE",
+        "PLAN_LANDING": "X Y LEG_LENGTH",
+        "PLAN_ANKLE": "TOE_OFF HEEL_STRIKE SPEED",
+        "PLAN_STEP": "VALID SUPPORT PHASE THETA STEP_LENGTH STEP_COUNT",
+    }.items()
+}
 
 
 class OfflineFirmware:
@@ -75,6 +88,7 @@ class OfflineFirmware:
 
         infeasible = output.faults & core.SADDLE_FAULT_SPEED_INFEASIBLE
         return {
+            **NO_PLAN,
             "SCORES_STEP": {
                 "S_PEND": valid(scores.s_pend, core.SADDLE_VALID_STEP, infeasible),
                 "S_JUMP": valid(scores.s_jump, core.SADDLE_VALID_STEP, infeasible),
@@ -94,7 +108,7 @@ class OfflineFirmware:
         }
 
 
-def sets_of(walk: Walk) -> list[tuple[float, playback.Messages]]:
+def sets_of(walk: Walk) -> list[tuple[float, Messages]]:
     recording = walk.recording()
     return list(measurements(recording, analyse(recording).contact))
 
@@ -174,7 +188,7 @@ def test_in_real_time_the_answers_are_those_of_lockstep():
     sets = sets_of(Walk(duration_s=0.5))
     start_s = time.monotonic()
     live = list(play_realtime(OfflineFirmware(), iter(sets)))
-    assert time.monotonic() - start_s == pytest.approx(len(sets) * playback.TICK_S, abs=0.07)
+    assert time.monotonic() - start_s == pytest.approx(len(sets) * TICK_S, abs=0.07)
     assert same(live, list(play_lockstep(OfflineFirmware(), iter(sets))))
 
 
@@ -183,25 +197,6 @@ def test_a_tick_with_a_lost_frame_is_no_tick(monkeypatch):
     bus = OfflineFirmware(lose=frozenset({"SCORES_MARGIN"}))
     with pytest.raises(UserError, match=r"did not answer the measurements at 0\.00 s"):
         list(play_lockstep(bus, iter(sets_of(Walk(duration_s=0.5)))))
-
-
-def test_frames_of_two_ticks_are_not_mixed():
-    sender, reader = Sender(), TickReader()
-    step = {"S_PEND": 0.1, "S_JUMP": 0.2, "S_SW": 0.3}
-    margin = {"MOS_COM": 0.1, "MOS_XCOM": 0.2, "V_COMP": 0.3}
-    force = {"GRAVITY_X": 1.0, "GRAVITY_Y": 2.0, "FAULTS": 0}
-    health = {"STATUS": 0, "LIMITS": 0, "LATE_TICKS": 0, "REJECTED_FRAMES": 0}
-    sender.frame("SCORES_STEP", **step)  # lost: the next is of counter 1
-    frames = [
-        sender.frame(name, **values)
-        for name, values in (
-            ("SCORES_STEP", step),
-            ("SCORES_MARGIN", margin),
-            ("SCORES_FORCE", force),
-            ("HEALTH", health),
-        )
-    ]
-    assert [reader.feed(frame) for frame in frames] == [None] * 4
 
 
 def test_a_walk_is_judged_as_it_was_walked():

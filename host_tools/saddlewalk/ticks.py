@@ -1,0 +1,55 @@
+"""The firmware's ticks as they come over CAN: each one whole, or not at all."""
+
+import time
+from collections.abc import Callable
+
+import can
+
+from saddlewalk.wire import Receiver
+
+TICK_S = 0.08
+PLAN_MESSAGES = (
+    "PLAN_COM PLAN_COM_VELOCITY PLAN_LEFT PLAN_RIGHT PLAN_SWING PLAN_LANDING PLAN_ANKLE PLAN_STEP"
+).split()
+SCORE_MESSAGES = "SCORES_STEP SCORES_MARGIN SCORES_FORCE".split()
+MESSAGES = {*PLAN_MESSAGES, *SCORE_MESSAGES, "HEALTH"}
+
+Messages = dict[str, dict[str, float]]  # message name -> signal name -> value
+
+
+class TickReader:
+    """Gathers the frames of a tick, of which HEALTH is the last."""
+
+    def __init__(self) -> None:
+        self.receiver = Receiver()
+        self._latest: Messages = {}
+
+    def feed(self, frame: can.Message) -> Messages | None:
+        """All messages of a tick once they have come; None before, and if one was lost."""
+        accepted = self.receiver.accept(frame)
+        if accepted is None:
+            return None
+        name, signals = accepted
+        self._latest[name] = signals
+        if name != "HEALTH":
+            return None
+        messages, self._latest = self._latest, {}
+        counters = {part["COUNTER"] for name, part in messages.items() if name in MESSAGES}
+        whole = messages.keys() >= MESSAGES and len(counters) == 1
+        return messages if whole else None
+
+
+def next_tick(
+    bus: can.BusABC, feed: Callable[[can.Message], Messages | None], within_s: float
+) -> Messages | None:
+    """The next tick that `feed` makes of the bus's frames; None if none is whole in time.
+
+    Takes at least one frame that is there, and ends in time whatever the bus is flooded with.
+    """
+    deadline_s = time.monotonic() + within_s
+    while True:
+        left_s = deadline_s - time.monotonic()
+        frame = bus.recv(max(0.0, left_s))
+        messages = feed(frame) if frame else None
+        if messages or left_s <= 0:
+            return messages

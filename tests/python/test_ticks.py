@@ -1,0 +1,86 @@
+"""A tick of the firmware comes whole or not at all, and waiting for one ends."""
+
+import math
+import time
+
+import can
+import pytest
+
+from saddlewalk.exoskeleton import plan_of
+from saddlewalk.ticks import TickReader, next_tick
+from saddlewalk.wire import Sender
+
+
+def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
+    """All frames of one tick of a walk; changed: signals of PLAN_COM."""
+    values = {
+        "PLAN_COM": {"X": 0.0, "Y": 0.01, "Z": 1.0} | changed,
+        "PLAN_COM_VELOCITY": {"VX": 1.2, "VY": 0.0, "VZ": 0.0},
+        "PLAN_LEFT": {"X": 0.0, "Y": 0.05, "Z": 0.0},
+        "PLAN_RIGHT": {"X": 0.0, "Y": -0.05, "Z": 0.05},
+        "PLAN_SWING": {"VX": 2.4, "VZ": 0.0, "TIME_TO_HEEL_STRIKE": 0.3},
+        "PLAN_LANDING": {"X": 0.7, "Y": -0.05, "LEG_LENGTH": 1.02},
+        "PLAN_ANKLE": {"TOE_OFF": 0.0, "HEEL_STRIKE": 0.0, "SPEED": 1.2},
+        "PLAN_STEP": {
+            "VALID": 1,
+            "SUPPORT": 0,
+            "PHASE": 0,
+            "THETA": 0,
+            "STEP_LENGTH": 0.7,
+            "STEP_COUNT": 7,
+        },
+        "SCORES_STEP": {"S_PEND": 1.0, "S_JUMP": 1.0, "S_SW": 1.0},
+        "SCORES_MARGIN": {"MOS_COM": 0.1, "MOS_XCOM": 0.1, "V_COMP": 1.2},
+        "SCORES_FORCE": {"GRAVITY_X": 0.0, "GRAVITY_Y": 0.0, "FAULTS": 0},
+        "HEALTH": {"STATUS": 0, "LIMITS": 0, "LATE_TICKS": 0, "REJECTED_FRAMES": 0},
+    }
+    return [sender.frame(name, **signals) for name, signals in values.items()]
+
+
+@pytest.mark.parametrize("lost", range(12))
+def test_a_tick_with_a_lost_frame_is_not_used(lost):
+    sender, reader = Sender(), TickReader()
+    first, second, third = (tick_frames(sender) for _ in range(3))
+    assert [reader.feed(frame) is not None for frame in first] == [False] * 11 + [True]
+    assert not any(reader.feed(frame) for frame in second[:lost] + second[lost + 1 :])
+    heard = [reader.feed(frame) for frame in third]
+    assert plan_of(heard[-1]).step_count == 7 and not any(heard[:-1])
+
+
+def test_a_plan_with_a_number_that_is_not_available_is_no_plan():
+    sender, reader = Sender(), TickReader()
+    heard = [reader.feed(frame) for frame in tick_frames(sender, Y=math.nan)]
+    assert plan_of(heard[-1]) is None
+
+
+class Flooded:
+    """A bus that is never empty."""
+
+    def __init__(self, frame: can.Message) -> None:
+        self._frame = frame
+
+    def recv(self, timeout: float) -> can.Message:
+        return self._frame
+
+
+@pytest.mark.parametrize("within_s", [-1.0, 0.0, 0.1])
+def test_a_flood_without_a_tick_does_not_hold_up(within_s):
+    bus = Flooded(can.Message(arbitration_id=0x7FF, is_extended_id=False, data=bytes(8)))
+    reader = TickReader()
+    start_s = time.monotonic()
+    assert next_tick(bus, reader.feed, within_s) is None
+    assert max(within_s, 0.0) <= time.monotonic() - start_s < max(within_s, 0.0) + 0.5
+    assert reader.receiver.malformed >= 1
+
+
+def test_a_tick_that_waits_is_taken_even_when_time_is_up():
+    frames = iter(tick_frames(Sender()))
+
+    class Waiting:
+        def recv(self, timeout: float) -> can.Message | None:
+            return next(frames, None)
+
+    bus, reader = Waiting(), TickReader()
+    assert [next_tick(bus, reader.feed, -1.0) is not None for _ in range(12)] == [False] * 11 + [
+        True
+    ]
