@@ -65,6 +65,13 @@ static bool open_sending(saddle_bus_t *bus)
            fcntl(fd, F_SETFL, O_NONBLOCK) == 0;
 }
 
+static const char *remedy(int error)
+{
+    return error == EADDRINUSE || error == EACCES
+               ? "give another --can udp:GROUP:PORT"
+               : "loopback must be up, `sudo ip link set lo up`";
+}
+
 bool saddle_bus_udp_open(saddle_bus_t *bus, const char *group_and_port)
 {
     bus->kind = SADDLE_BUS_UDP;
@@ -75,8 +82,8 @@ bool saddle_bus_udp_open(saddle_bus_t *bus, const char *group_and_port)
         return false;
     }
     if (!open_receiving(bus) || !open_sending(bus)) {
-        snprintf(bus->description, sizeof bus->description, "UDP %.30s cannot be opened: %s",
-                 group_and_port, strerror(errno));
+        snprintf(bus->description, sizeof bus->description, "UDP %.30s cannot be opened (%s): %s",
+                 group_and_port, strerror(errno), remedy(errno));
         saddle_bus_close(bus);
         return false;
     }

@@ -6,6 +6,7 @@ no root. A node does not hear its own frames. Junk datagrams are counted, not ra
 python-can's own programs find it as `can_logger -i saddlewalk_udp`.
 """
 
+import errno
 import ipaddress
 import select
 import socket
@@ -36,10 +37,15 @@ class LoopbackUdpBus(can.BusABC):
     def __init__(self, channel: str = f"{DEFAULT_GROUP}:{DEFAULT_PORT}", **kwargs: object) -> None:
         self._address = _address(str(channel))
         self.malformed = 0
-        self._receiving = _receiving_socket(self._address)
-        self._sending = _sending_socket()
-        self._own_address = self._sending.getsockname()
         self.channel_info = "UDP {}:{} on loopback".format(*self._address)
+        try:
+            self._receiving = _receiving_socket(self._address)
+            self._sending = _sending_socket()
+        except OSError as error:
+            raise UserError(
+                f"CAN: {self.channel_info} cannot be opened ({error.strerror}): {_remedy(error)}"
+            ) from error
+        self._own_address = self._sending.getsockname()
         super().__init__(channel, **kwargs)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
@@ -90,6 +96,12 @@ def _address(channel: str) -> tuple[str, int]:
             f"CAN over UDP: {channel} is not GROUP:PORT, such as {DEFAULT_GROUP}:{DEFAULT_PORT}"
         )
     return group, number
+
+
+def _remedy(error: OSError) -> str:
+    if error.errno in (errno.EADDRINUSE, errno.EACCES):
+        return "give another --can udp:GROUP:PORT"
+    return "loopback must be up, `sudo ip link set lo up`"
 
 
 def _receiving_socket(address: tuple[str, int]) -> socket.socket:
@@ -145,6 +157,13 @@ def open_bus(spec: str = "auto") -> can.BusABC:
     if kind == "udp" and rest:
         return LoopbackUdpBus(rest)
     raise UserError(f"CAN {spec} is not auto, socketcan:INTERFACE, udp or udp:GROUP:PORT")
+
+
+def private_udp() -> str:
+    """The spec of a UDP bus on a port that nobody uses now."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("", 0))
+        return f"udp:{DEFAULT_GROUP}:{probe.getsockname()[1]}"
 
 
 def describe(bus: can.BusABC) -> str:

@@ -12,6 +12,7 @@ y from the walking line, z from the ground.
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -43,6 +44,16 @@ class Body:
     step_reach_m: complex = 0.30 + 0.25j  # largest shift of a landing
     crossing_m: float = 0.15  # the swing foot may cross the stance foot's line by this much
     fall_height: float = 0.75  # of the pendulum length: lower is a fall
+
+    @classmethod
+    def of(cls, config: Any) -> "Body":
+        """The body that a saddle_config_t describes."""
+        return cls(
+            mass_kg=config.body_mass_kg,
+            height_m=config.body_height_m,
+            pendulum_ratio=config.pendulum_ratio,
+            foot_half_length_m=config.cop_range_m,
+        )
 
     @property
     def pendulum_m(self) -> float:

@@ -2,6 +2,8 @@
 
 import contextlib
 import os
+import select
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -27,6 +29,24 @@ def open_lcm(url: str | None = None) -> lcm.LCM:
         if not url.startswith("udpm:"):
             right = f"give an LCM URL such as {DEFAULT_URL}"
         raise UserError(f"LCM {url} cannot be opened: {right}") from error
+
+
+def receive(bus: lcm.LCM, within_s: float = 0.0) -> bool:
+    """Hand one message to its subscribers if one comes in time; whether one did.
+
+    In the place of lcm's handle_timeout(), in which Ctrl-C breaks the interpreter.
+    """
+    if not select.select([bus], [], [], within_s)[0]:
+        return False
+    bus.handle()
+    return True
+
+
+def listen(bus: lcm.LCM, for_s: float) -> None:
+    """Hand what comes to its subscribers for that long."""
+    deadline_s = time.monotonic() + for_s
+    while (left_s := deadline_s - time.monotonic()) > 0:
+        receive(bus, left_s)
 
 
 @contextlib.contextmanager

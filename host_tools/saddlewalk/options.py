@@ -1,4 +1,4 @@
-"""Types of command-line options whose errors say what would be right."""
+"""Command-line options that commands share, and types whose errors say what would be right."""
 
 import argparse
 import math
@@ -33,3 +33,28 @@ def whole_number_in(low: int, high: int) -> Callable[[str], int]:
         return value
 
     return parse
+
+
+speed = number_in(1e-3, 10, "m/s")
+
+
+def add_gait_options(
+    parser: argparse.ArgumentParser, default_speed_m_s: float | None = None
+) -> None:
+    """--speed, required unless it has a default, and --hs-angle: what is asked of the planner."""
+    default = "" if default_speed_m_s is None else f" (default {default_speed_m_s:g})"
+    parser.add_argument(
+        "--speed",
+        type=speed,
+        default=default_speed_m_s,
+        required=default_speed_m_s is None,
+        metavar="M/S",
+        help="walking speed" + default,
+    )
+    parser.add_argument(
+        "--hs-angle",
+        type=number_in(0, 30, "degrees"),
+        default=10.0,
+        metavar="DEG",
+        help="foot angle at heel strike (default 10)",
+    )

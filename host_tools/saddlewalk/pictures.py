@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Polygon
 
 from saddlewalk.core import ffi, library
-from saddlewalk.emulator import Body, Push
+from saddlewalk.emulator import Push
 from saddlewalk.lcm_types import bos_t
 
 matplotlib.use("Agg")
@@ -37,8 +37,8 @@ def read_walk(path: Path) -> Columns:
     }
 
 
-def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push]) -> None:
-    """Draw walk.csv, whole or as far as it goes."""
+def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push], cop_range_m: float) -> None:
+    """Draw walk.csv, whole or as far as it goes. cop_range_m: d_h of the walker."""
     walk = read_walk(csv_path)
     figure = Figure(figsize=(13, 10), dpi=110, layout="constrained")
     above, height, scores, margins = figure.subplots(4, 1, height_ratios=(1.7, 1, 1, 1))
@@ -46,7 +46,7 @@ def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push]) -> None:
     closely = {name: column[shown] for name, column in walk.items()}
     speed = np.nanmedian(walk["plan_speed_m_s"])
     figure.suptitle(f"Walking at {speed:.2f} m/s: the plan, and the wearer who follows it")
-    _draw_above(above, closely, pushes)
+    _draw_above(above, closely, pushes, cop_range_m)
     _draw_height(height, closely)
     _draw_lines(scores, walk, (("s_pend", "S_pend"), ("s_jump", "S_jump"), ("s_sw", "S_SW")))
     scores.set(ylabel="stability score\n(1 reference, 0 limit)")
@@ -65,10 +65,11 @@ def _shown(time_s: np.ndarray, pushes: Sequence[Push]) -> np.ndarray:
     return shown if shown.any() else np.ones_like(shown)
 
 
-def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push]) -> None:
+def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], cop_range_m: float) -> None:
     for index in range(len(walk["time_s"])):
-        axes.add_patch(Polygon(_bos(walk, index), color=SKY, alpha=0.10, lw=0))
-        axes.add_patch(Polygon(_bos(walk, index), fill=False, ec=SKY, alpha=0.35, lw=0.5))
+        bos_m = _bos(walk, index, cop_range_m)
+        axes.add_patch(Polygon(bos_m, color=SKY, alpha=0.10, lw=0))
+        axes.add_patch(Polygon(bos_m, fill=False, ec=SKY, alpha=0.35, lw=0.5))
     for index, (side, colour) in enumerate(FEET):
         planned = walk["support"] == index
         _draw_feet(axes, walk, planned, side, colour)
@@ -85,13 +86,13 @@ def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push]) -> None:
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False)
 
 
-def _bos(walk: Columns, index: int) -> np.ndarray:
+def _bos(walk: Columns, index: int, cop_range_m: float) -> np.ndarray:
     """Base of support of the true feet, from the C core."""
     cops = ffi().new("saddle_vec2_t[2]")
     for cop, (side, _) in zip(cops, FEET, strict=True):
         cop.x, cop.y = walk[f"true_{side}_x_m"][index], walk[f"true_{side}_y_m"][index]
     bos = ffi().new("saddle_bos_t *")
-    bos[0] = library().saddle_bos(cops, Body().foot_half_length_m)
+    bos[0] = library().saddle_bos(cops, cop_range_m)
     vertices = ffi().new("saddle_vec2_t[]", bos_t.VERTICES)
     library().saddle_bos_polygon(bos, vertices)
     return np.array([(vertex.x, vertex.y) for vertex in vertices])
@@ -115,7 +116,7 @@ def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
     at = complex(walk["true_com_x_m"][index], walk["true_com_y_m"][index])
     tail = at - 0.4 * push.vector_n_s / abs(push.vector_n_s)
     axes.annotate(
-        f"push\n{push.impulse_n_s:g} N·s",
+        f"push\n{push.impulse_n_s:.3g} N·s",
         xy=(at.real, at.imag),
         xytext=(tail.real, tail.imag),
         arrowprops={"arrowstyle": "-|>", "color": PINK, "lw": 3},

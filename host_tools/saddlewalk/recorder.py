@@ -16,15 +16,17 @@ import lcm
 from saddlewalk.emulator import Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.exoskeleton import Observer, Tick
+from saddlewalk.lcmbus import listen, receive
 from saddlewalk.table import Cell, format_cell
 
 LCM_CHANNELS = "SADDLEWALK_.*"
 LCM_QUEUE = 2000
+LAST_WORDS_S = 0.2  # for what is still on its way at the end
 CHANNELS = tuple(f"SADDLEWALK_{part}" for part in ("PLAN", "SCORES", "BOS", "HEALTH", "TRUTH"))
 
 _POINTS = "com_x_m com_y_m com_z_m left_x_m left_y_m left_z_m right_x_m right_y_m right_z_m".split()
 COLUMNS = (
-    "time_s step_count phase theta_turn support".split()
+    "time_s step_count phase theta_rad support".split()
     + [f"plan_{name}" for name in _POINTS]
     + "plan_speed_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m v_comp_m_s".split()
     + "gravity_x_n gravity_y_n faults limits".split()
@@ -59,7 +61,7 @@ class Recorder(Observer):
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.poll(patience_ms=200)
+        listen(self._bus, LAST_WORDS_S)
         self._bus.unsubscribe(self._subscription)
         self._lcm_log.close()
         self._can_log.stop()
@@ -73,9 +75,10 @@ class Recorder(Observer):
         self._csv.writerow(format_cell(cell) for cell in row(tick, wearer))
         self.rows += 1
 
-    def poll(self, patience_ms: int = 0) -> None:
-        while self._bus.handle_timeout(patience_ms):
-            pass
+    def poll(self) -> None:
+        for _ in range(LCM_QUEUE):
+            if not receive(self._bus):
+                return
 
     def _lcm_message(self, channel: str, data: bytes) -> None:
         self._lcm_log.write_event(time.time_ns() // 1000, channel, data)

@@ -2,15 +2,18 @@
 
 import random
 import socket
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import can
 import pytest
 
-from saddlewalk.bus import DEFAULT_GROUP, LoopbackUdpBus, describe, open_bus
+from saddlewalk.bus import DEFAULT_GROUP, LoopbackUdpBus, describe, open_bus, private_udp
 from saddlewalk.errors import UserError
 from saddlewalk.lcmbus import open_lcm
-from saddlewalk.playback import private_udp
+from saddlewalk.paths import built
 
 WAIT_S = 2.0  # for what must come
 SILENCE_S = 0.05  # for what must not
@@ -114,6 +117,29 @@ def test_a_wrong_spec_is_named(spec):
         open_bus(spec)
     assert spec.partition(":")[2] in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_a_port_that_is_taken_is_one_line():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as selfish:
+        selfish.bind(("", 0))
+        spec = f"udp:{DEFAULT_GROUP}:{selfish.getsockname()[1]}"
+        with pytest.raises(UserError, match=r"Address already in use.*give another --can") as error:
+            open_bus(spec)
+    assert spec.removeprefix("udp:") in str(error.value)
+
+
+def test_loopback_that_is_down_is_one_line():
+    unshare = ["unshare", "--user", "--map-root-user", "--net"]
+    if subprocess.run([*unshare, "true"], capture_output=True, check=False).returncode != 0:
+        pytest.skip("no user namespaces here")
+    emulate = [Path(sys.executable).with_name("saddlewalk"), "emulate", "--lcm", "memq://"]
+    host = [built("bin/saddlewalk-host"), "--lcm=none"]
+    for command in (emulate, host):
+        done = subprocess.run(
+            [*unshare, *command], capture_output=True, text=True, check=False, timeout=WAIT_S * 5
+        )
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+        assert "sudo ip link set lo up" in done.stderr
 
 
 def test_lcm_that_cannot_be_opened_is_one_line(capfd):

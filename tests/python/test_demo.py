@@ -1,7 +1,6 @@
 """`saddlewalk demo` and `emulate` end to end, with the real firmware process on private ports."""
 
 import csv
-import math
 import socket
 import subprocess
 import sys
@@ -12,13 +11,11 @@ import can
 import lcm
 import pytest
 
-from saddlewalk.bus import open_bus
+from saddlewalk.bus import open_bus, private_udp
 from saddlewalk.cli import main
 from saddlewalk.emulator import STEP_S
-from saddlewalk.exoskeleton import TICK_S, TickReader, plan_of
-from saddlewalk.playback import private_udp
 from saddlewalk.recorder import CHANNELS, COLUMNS
-from saddlewalk.wire import Sender
+from saddlewalk.ticks import TICK_S
 
 FILES = {"walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"}
 
@@ -30,48 +27,6 @@ def ports() -> list[str]:
         probe.bind(("", 0))
         port = probe.getsockname()[1]
     return ["--can", private_udp(), "--lcm", f"udpm://239.255.76.67:{port}?ttl=0"]
-
-
-def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
-    """All frames of one tick of a walk; changed: signals of PLAN_COM."""
-    values = {
-        "PLAN_COM": {"X": 0.0, "Y": 0.01, "Z": 1.0} | changed,
-        "PLAN_COM_VELOCITY": {"VX": 1.2, "VY": 0.0, "VZ": 0.0},
-        "PLAN_LEFT": {"X": 0.0, "Y": 0.05, "Z": 0.0},
-        "PLAN_RIGHT": {"X": 0.0, "Y": -0.05, "Z": 0.05},
-        "PLAN_SWING": {"VX": 2.4, "VZ": 0.0, "TIME_TO_HEEL_STRIKE": 0.3},
-        "PLAN_LANDING": {"X": 0.7, "Y": -0.05, "LEG_LENGTH": 1.02},
-        "PLAN_ANKLE": {"TOE_OFF": 0.0, "HEEL_STRIKE": 0.0, "SPEED": 1.2},
-        "PLAN_STEP": {
-            "VALID": 1,
-            "SUPPORT": 0,
-            "PHASE": 0,
-            "THETA": 0,
-            "STEP_LENGTH": 0.7,
-            "STEP_COUNT": 7,
-        },
-        "SCORES_STEP": {"S_PEND": 1.0, "S_JUMP": 1.0, "S_SW": 1.0},
-        "SCORES_MARGIN": {"MOS_COM": 0.1, "MOS_XCOM": 0.1, "V_COMP": 1.2},
-        "SCORES_FORCE": {"GRAVITY_X": 0.0, "GRAVITY_Y": 0.0, "FAULTS": 0},
-        "HEALTH": {"STATUS": 0, "LIMITS": 0, "LATE_TICKS": 0, "REJECTED_FRAMES": 0},
-    }
-    return [sender.frame(name, **signals) for name, signals in values.items()]
-
-
-@pytest.mark.parametrize("lost", range(12))
-def test_a_tick_with_a_lost_frame_is_not_used(lost):
-    sender, reader = Sender(), TickReader()
-    first, second, third = (tick_frames(sender) for _ in range(3))
-    assert [reader.feed(frame) is not None for frame in first] == [False] * 11 + [True]
-    assert not any(reader.feed(frame) for frame in second[:lost] + second[lost + 1 :])
-    heard = [reader.feed(frame) for frame in third]
-    assert plan_of(heard[-1]).step_count == 7 and not any(heard[:-1])
-
-
-def test_a_plan_with_a_number_that_is_not_available_is_no_plan():
-    sender, reader = Sender(), TickReader()
-    heard = [reader.feed(frame) for frame in tick_frames(sender, Y=math.nan)]
-    assert plan_of(heard[-1]) is None
 
 
 def demo(folder: Path, ports: list[str], *options: str) -> int:
@@ -154,6 +109,19 @@ def test_demo_refuses_a_bus_on_which_somebody_walks(tmp_path, ports, capsys):
         told = capsys.readouterr().err
         assert told.count("\n") == 1 and "busy with another walk" in told
     assert before == {path: path.read_bytes() for path in tmp_path.iterdir()}
+
+
+def test_firmware_and_wearer_have_the_body_that_was_asked_for(tmp_path, ports):
+    (tmp_path / "person.toml").write_text("pendulum_ratio = 0.6\nstep_width_fast_m = 0.13\n")
+    body = ["--height", "1.5", "--mass", "45", "--config", str(tmp_path / "person.toml")]
+    assert demo(tmp_path, ports, "--duration", "10", *body) == 0
+    walk = rows(tmp_path)
+    assert float(walk[0]["true_com_z_m"]) == pytest.approx(0.6 * 1.5, abs=1e-6)
+    for planned in walk[1:]:
+        assert abs(float(planned["plan_left_y_m"])) == pytest.approx(0.065, abs=1e-4)
+        assert 0.8 < float(planned["plan_com_z_m"]) < 0.95
+    # Without --push: as much as 8 N s are to 63.3 kg.
+    assert float(walk[-1]["pushed_y_n_s"]) == pytest.approx(8 * 45 / 63.3, abs=1e-6)
 
 
 def test_demo_says_where_it_cannot_write(tmp_path, ports, capsys):

@@ -66,6 +66,15 @@ def state(wearer: Wearer) -> tuple:
     return wearer.com_m, wearer.velocity_m_s, wearer.height_m, wearer.cop_m, feet
 
 
+def test_the_body_is_that_of_the_configuration():
+    config = ffi().new("saddle_config_t *")
+    config[0] = library().saddle_config_default(1.5, 45.0)
+    config.pendulum_ratio, config.cop_range_m = 0.5, 0.0625
+    body = Body.of(config)
+    assert (body.height_m, body.mass_kg, body.foot_half_length_m) == (1.5, 45.0, 0.0625)
+    assert body.pendulum_m == 0.75
+
+
 def test_com_is_a_pendulum_about_a_fixed_cop():
     # A CoP at the toes that is asked to go further forward stays there.
     wearer = Wearer(noise=STEADY)
@@ -287,6 +296,9 @@ def test_a_lost_plan_ends_the_walk_and_the_wearer_puts_both_feet_down():
         (["--hs-angle", "91"], "91"),
         (["--duration", "0"], "0"),
         (["--seed", "-1"], "-1"),
+        (["--height", "17"], "17"),
+        (["--mass", "nan"], "nan"),
+        (["--config", "no-such.toml"], "no-such.toml"),
         (["--clock", "sundial"], "sundial"),
         (["--can", "pigeon"], "pigeon"),
     ],

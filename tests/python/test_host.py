@@ -11,10 +11,9 @@ import can
 import pytest
 
 from saddlewalk import paths
-from saddlewalk.bus import open_bus
+from saddlewalk.bus import open_bus, private_udp
 from saddlewalk.errors import UserError
 from saddlewalk.lcmbus import open_lcm
-from saddlewalk.playback import private_udp
 from saddlewalk.wire import Receiver, Sender, frame_crc
 
 WAIT_S = 2.0  # for what must come

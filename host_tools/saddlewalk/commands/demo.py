@@ -13,10 +13,10 @@ from saddlewalk.commands.emulate import (
     add_walk_options,
     command_of,
     events_printer,
-    push_text,
     summary,
     wearer_of,
 )
+from saddlewalk.config import host_arguments, load_config
 from saddlewalk.errors import UserError
 
 if TYPE_CHECKING:
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from saddlewalk.recorder import Recorder
 
 PUSH_TIME_S = 8
-PUSH = f"8@{PUSH_TIME_S}:90"
+PUSH_N_S_KG = 8.0 / 63.3
+PUSH_DIRECTION_DEG = 90.0
 REFRESH_S = 0.2
 LINE_S = 2.0
 LISTEN_S = 0.25
@@ -41,14 +42,15 @@ def add_parser(subparsers: Any) -> None:
         metavar="FOLDER",
         help="for the picture and the logs (default out/demo)",
     )
-    add_walk_options(parser, clock="realtime", pushes=(PUSH,))
+    add_walk_options(parser, push=f"{PUSH_N_S_KG:.3f} N s/kg to the left at {PUSH_TIME_S} s")
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the firmware, close the logs
+    config = load_config(args)
     if args.push is None and args.duration > PUSH_TIME_S:
-        args.push = [push_text(PUSH)]
+        args.push = [(PUSH_N_S_KG * config.body_mass_kg, PUSH_TIME_S, PUSH_DIRECTION_DEG)]
     lcm = _open_lcm(args.lcm)
     from saddlewalk.bus import describe, open_bus
     from saddlewalk.emulator import Noise
@@ -56,8 +58,8 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.host import running_host
     from saddlewalk.recorder import Recorder
 
-    wearer = wearer_of(args, Noise())
-    host_options = [f"--can={args.can}", f"--clock={args.clock}"]
+    wearer = wearer_of(args, config, Noise())
+    host_options = [f"--can={args.can}", f"--clock={args.clock}", *host_arguments(config)]
     host_options += [f"--lcm={args.lcm}"] if args.lcm else []
     with open_bus(args.can) as bus:
         _refuse_company(bus, lcm)
@@ -86,11 +88,13 @@ def _open_lcm(url: str | None) -> Any:
 
 def _refuse_company(bus: Any, lcm: Any) -> None:
     """Another walk on the same buses would be mixed into this one. Before anything is written."""
+    from saddlewalk.lcmbus import receive
+
     heard: list[str] = []
     subscription = lcm.subscribe("SADDLEWALK_.*", lambda channel, _: heard.append(channel))
     if bus.recv(LISTEN_S) is not None:
         heard.append(str(bus.channel_info))
-    lcm.handle_timeout(0)
+    receive(lcm, 0)
     lcm.unsubscribe(subscription)
     if heard:
         raise UserError(
@@ -134,7 +138,7 @@ def _finish(
     from saddlewalk.pictures import draw_walk
 
     picture = folder / "walk.png"
-    draw_walk(recorder.csv_path, picture, wearer.pushes)
+    draw_walk(recorder.csv_path, picture, wearer.pushes, wearer.body.foot_half_length_m)
     checks = _checks(wearer, exoskeleton, recorder)
     print(summary(wearer, exoskeleton))
     for good, words in checks:

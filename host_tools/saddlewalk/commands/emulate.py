@@ -4,11 +4,12 @@ import argparse
 import math
 from typing import TYPE_CHECKING, Any
 
+from saddlewalk.config import add_body_options, load_config
 from saddlewalk.errors import UserError
-from saddlewalk.options import number_in, whole_number_in
+from saddlewalk.options import add_gait_options, number_in, whole_number_in
 
 if TYPE_CHECKING:
-    from saddlewalk.emulator import Push, Wearer
+    from saddlewalk.emulator import Noise, Push, Wearer
     from saddlewalk.exoskeleton import Command
 
 IMPULSE_MAX_N_S = 1000.0
@@ -17,7 +18,7 @@ DURATION_MAX_S = 86400.0
 
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser("emulate", help="be the wearer of a running firmware")
-    add_walk_options(parser, clock="realtime", pushes=())
+    add_walk_options(parser)
     parser.add_argument(
         "--noise-scale",
         type=number_in(0, 100),
@@ -28,9 +29,8 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
 
 
-def add_walk_options(parser: argparse.ArgumentParser, clock: str, pushes: tuple[str, ...]) -> None:
-    """What emulate and demo have in common."""
-    default = f" (default {' '.join(pushes)})" if pushes else ""
+def add_walk_options(parser: argparse.ArgumentParser, push: str = "") -> None:
+    """What emulate and demo have in common; `push` tells the default of --push."""
     parser.add_argument(
         "--can", default="auto", metavar="SPEC", help="auto, socketcan:INTERFACE, udp[:GROUP:PORT]"
     )
@@ -38,23 +38,11 @@ def add_walk_options(parser: argparse.ArgumentParser, clock: str, pushes: tuple[
     parser.add_argument(
         "--clock",
         choices=("realtime", "lockstep"),
-        default=clock,
-        help=f"the wall clock, or as fast as the firmware answers (default {clock})",
+        default="realtime",
+        help="the wall clock, or as fast as the firmware answers (default realtime)",
     )
-    parser.add_argument(
-        "--speed",
-        type=number_in(1e-3, 10, "m/s"),
-        default=1.2,
-        metavar="M/S",
-        help="asked of the planner (default 1.2)",
-    )
-    parser.add_argument(
-        "--hs-angle",
-        type=number_in(0, 30, "degrees"),
-        default=10.0,
-        metavar="DEG",
-        help="foot angle at heel strike (default 10)",
-    )
+    add_gait_options(parser, default_speed_m_s=1.2)
+    add_body_options(parser)
     parser.add_argument(
         "--duration",
         type=number_in(0.08, DURATION_MAX_S, "s"),
@@ -67,7 +55,8 @@ def add_walk_options(parser: argparse.ArgumentParser, clock: str, pushes: tuple[
         type=push_text,
         action="append",
         metavar="N.S@S:DEG",
-        help="impulse at a time in a direction, 0 forward, 90 to the left; repeatable" + default,
+        help="impulse at a time in a direction, 0 forward, 90 to the left; repeatable"
+        + (f" (default {push})" if push else ""),
     )
     parser.add_argument(
         "--seed",
@@ -101,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.exoskeleton import Exoskeleton
     from saddlewalk.lcmbus import open_lcm
 
-    wearer = wearer_of(args, Noise().scaled(args.noise_scale))
+    wearer = wearer_of(args, load_config(args), Noise().scaled(args.noise_scale))
     lcm = open_lcm(args.lcm)
     with open_bus(args.can) as bus:
         print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
@@ -112,8 +101,9 @@ def run(args: argparse.Namespace) -> int:
     return 1 if wearer.fallen else 0
 
 
-def wearer_of(args: argparse.Namespace, noise: Any) -> "Wearer":
-    from saddlewalk.emulator import Push, Wearer
+def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer":
+    """The wearer of `args` with the body that the firmware's configuration describes."""
+    from saddlewalk.emulator import Body, Push, Wearer
 
     pushes = tuple(Push(*push) for push in args.push or ())
     for push in pushes:
@@ -122,7 +112,7 @@ def wearer_of(args: argparse.Namespace, noise: Any) -> "Wearer":
                 f"--push at {push.time_s:g} s: give a time before the end, --duration "
                 f"{args.duration:g} s"
             )
-    return Wearer(noise=noise, pushes=pushes, seed=args.seed)
+    return Wearer(Body.of(config), noise, pushes=pushes, seed=args.seed)
 
 
 def command_of(args: argparse.Namespace) -> "Command":
@@ -157,7 +147,7 @@ def events_printer(wearer: "Wearer") -> Any:
 
 
 def push_words(push: "Push") -> str:
-    return f"push of {push.impulse_n_s:g} N s to {push.direction_deg:g} degrees"
+    return f"push of {push.impulse_n_s:.3g} N s to {push.direction_deg:g} degrees"
 
 
 def summary(wearer: "Wearer", exoskeleton: Any) -> str:

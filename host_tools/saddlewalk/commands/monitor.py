@@ -1,7 +1,6 @@
 """`saddlewalk monitor`: what the firmware publishes on LCM, live in the terminal."""
 
 import argparse
-import select
 import sys
 import time
 from dataclasses import dataclass, field
@@ -94,9 +93,11 @@ class Listener:
 
 
 def _once(bus: Any, listener: Listener) -> int:
+    from saddlewalk.lcmbus import receive
+
     deadline_s = time.monotonic() + ONCE_S
     while not listener.complete and (left_s := deadline_s - time.monotonic()) > 0:
-        _receive(bus, left_s)
+        receive(bus, left_s)
     print(listener.line())
     return 0 if listener.complete else 1
 
@@ -112,25 +113,17 @@ def _watch(bus: Any, listener: Listener) -> NoReturn:
 def _watch_panel(bus: Any, listener: Listener) -> NoReturn:
     from rich.live import Live
 
+    from saddlewalk.lcmbus import listen
+
     with Live(listener.panel(), auto_refresh=False) as live:
         while True:
-            _listen(bus, REFRESH_S)
+            listen(bus, REFRESH_S)
             live.update(listener.panel(), refresh=True)
 
 
 def _watch_lines(bus: Any, listener: Listener) -> NoReturn:
+    from saddlewalk.lcmbus import listen
+
     while True:
-        _listen(bus, LINE_S)
+        listen(bus, LINE_S)
         print(listener.line(), flush=True)
-
-
-def _listen(bus: Any, for_s: float) -> None:
-    deadline_s = time.monotonic() + for_s
-    while (left_s := deadline_s - time.monotonic()) > 0:
-        _receive(bus, left_s)
-
-
-def _receive(bus: Any, within_s: float) -> None:
-    """Handle a message if one comes. Ctrl-C inside lcm's own handle_timeout() breaks Python."""
-    if select.select([bus], [], [], within_s)[0]:
-        bus.handle()

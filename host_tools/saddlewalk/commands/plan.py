@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from saddlewalk.config import ANKLES, add_body_options, load_config
-from saddlewalk.options import number_in, whole_number_in
+from saddlewalk.options import add_gait_options, number_in, whole_number_in
 from saddlewalk.table import Cell, write_table
 
 COLUMNS = (
@@ -23,14 +23,7 @@ SHORTEST_DT_S = 1e-5
 
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser("plan", help="plan a steady walk as CSV")
-    parser.add_argument("--speed", type=number_in(1e-9, 100, "m/s"), required=True, metavar="M/S")
-    parser.add_argument(
-        "--hs-angle",
-        type=number_in(0, 30, "degrees"),
-        default=10.0,
-        metavar="DEG",
-        help="foot angle at heel strike (default 10)",
-    )
+    add_gait_options(parser)
     parser.add_argument("--strides", type=whole_number_in(1, 10**6), default=1, metavar="N")
     parser.add_argument("--dt", type=number_in(SHORTEST_DT_S, 1e4, "s"), default=0.08, metavar="S")
     parser.add_argument("--ankle", choices=ANKLES, help="ankle strategy (default erf)")

@@ -41,11 +41,11 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk.bus import open_bus
+    from saddlewalk.bus import open_bus, private_udp
     from saddlewalk.config import host_arguments, load_config
     from saddlewalk.gait_events import analyse
     from saddlewalk.host import running_host
-    from saddlewalk.playback import measurements, play_lockstep, play_realtime, private_udp
+    from saddlewalk.playback import measurements, play_lockstep, play_realtime
     from saddlewalk.table import write_table
 
     recording = _load(args)

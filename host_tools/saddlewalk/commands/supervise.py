@@ -7,7 +7,7 @@ from typing import Any
 
 from saddlewalk.config import add_body_options, load_config
 from saddlewalk.errors import UserError
-from saddlewalk.options import number_in
+from saddlewalk.options import speed
 from saddlewalk.table import Cell, read_table, write_table
 
 STATE_COLUMNS = (
@@ -25,7 +25,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--out", metavar="FILE", help="default: standard output")
     parser.add_argument(
         "--speed",
-        type=number_in(1e-9, 100, "m/s"),
+        type=speed,
         metavar="M/S",
         help="walking speed to refer to until a step is complete",
     )
