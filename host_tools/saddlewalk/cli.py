@@ -30,16 +30,29 @@ def parser() -> argparse.ArgumentParser:
     return root
 
 
+def _forget_output() -> None:
+    """What standard output still holds cannot be written; the interpreter shall not try."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def main(argv: list[str] | None = None) -> int:
     """Run one subcommand. 0: done and sound; 1: done, and the result is bad; 2: bad input."""
     args = parser().parse_args(argv)
     try:
-        return args.run(args)
+        if sys.stdout is None:
+            raise UserError("standard output is closed: give one, such as /dev/null")
+        status = args.run(args)
+        sys.stdout.flush()
+        return status
     except UserError as error:
         print(f"saddlewalk {args.command}: {error}", file=sys.stderr)
         return 2
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _forget_output()
         return 1
+    except OSError as error:  # what no command foresaw, as a full disk under standard output
+        print(f"saddlewalk {args.command}: {error}", file=sys.stderr)
+        _forget_output()
+        return 2
     except KeyboardInterrupt:
         return 130

@@ -2,6 +2,7 @@
 
 import argparse
 import difflib
+import math
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -77,7 +78,7 @@ def _field_value(path: Path, name: str, value: Any) -> float | int:
     from saddlewalk.core import field_ranges
 
     if name == "ankle":
-        if value not in ANKLES:
+        if not isinstance(value, str) or value not in ANKLES:
             raise UserError(f"{path}: ankle = {value!r} must be one of {', '.join(ANKLES)}")
         return ANKLES[value]
     known = field_ranges()
@@ -87,4 +88,7 @@ def _field_value(path: Path, name: str, value: Any) -> float | int:
         raise UserError(f"{path}: {name} is not a field of saddle_config_t{hint}")
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise UserError(f"{path}: {name} = {value!r} must be a number")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf

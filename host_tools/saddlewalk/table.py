@@ -2,6 +2,7 @@
 
 import contextlib
 import csv
+import itertools
 import math
 import os
 import sys
@@ -12,6 +13,7 @@ from typing import TextIO
 
 from saddlewalk.errors import UserError
 
+RESOLUTION_S = 0.5e-6  # the firmware counts microseconds
 Cell = float | int | str | None
 
 
@@ -23,15 +25,27 @@ def format_cell(value: Cell) -> str:
 
 
 def write_table(out: str | None, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    """Write CSV to the file `out` in one piece, or stream it to standard output (None or "-")."""
+    """Write CSV to the file `out`, whole or not at all; None or "-": stream to standard output.
+
+    What is no ordinary file, as a device or a pipe, is written to and not replaced.
+    """
     if out is None or out == "-":
         _write_rows(sys.stdout, columns, rows)
         return
     path = Path(out)
     try:
-        descriptor, partial = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        if path.exists() and not path.is_file():
+            with path.open("w", newline="") as file:
+                _write_rows(file, columns, rows)
+        else:
+            _write_whole(path, columns, rows)
     except OSError as error:
         raise UserError(f"--out {out}: {error.strerror}") from error
+
+
+def _write_whole(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    path = path.resolve()  # a link stays one
+    descriptor, partial = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(descriptor, "w", newline="") as file:
             _write_rows(file, columns, rows)
@@ -39,16 +53,16 @@ def write_table(out: str | None, columns: Sequence[str], rows: Iterable[Sequence
         os.umask(mask)
         Path(partial).chmod(0o666 & ~mask)
         Path(partial).replace(path)
-    except OSError as error:
-        raise UserError(f"--out {out}: {error.strerror}") from error
     finally:
         Path(partial).unlink(missing_ok=True)
 
 
 def _write_rows(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    rows = iter(rows)
+    first = list(itertools.islice(rows, 1))  # input that is bad from the start gives no header
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(columns)
-    writer.writerows([format_cell(cell) for cell in row] for row in rows)
+    writer.writerows([format_cell(cell) for cell in row] for row in itertools.chain(first, rows))
 
 
 def read_table(source: str, columns: Sequence[str]) -> Iterator[tuple[int, dict[str, float]]]:
@@ -57,13 +71,11 @@ def read_table(source: str, columns: Sequence[str]) -> Iterator[tuple[int, dict[
     An empty cell is NaN. Further columns are ignored. Raises UserError naming the file, the line,
     the column and the text that is not a number.
     """
-    name = "standard input" if source == "-" else source
+    name = _name(source)
     try:
         with _open(source) as file:
             reader = csv.DictReader(file, strict=True)
-            missing = [column for column in columns if column not in (reader.fieldnames or ())]
-            if missing:
-                raise UserError(f"{name}: no column {missing[0]}; needed: {', '.join(columns)}")
+            _check_header(name, reader.fieldnames or (), columns)
             for row in reader:
                 yield reader.line_num, _numbers(name, reader.line_num, row, columns)
     except OSError as error:
@@ -72,8 +84,40 @@ def read_table(source: str, columns: Sequence[str]) -> Iterator[tuple[int, dict[
         raise UserError(f"{name}: not CSV: {error}") from error
 
 
+def read_series(
+    source: str, columns: Sequence[str], longest_s: float
+) -> Iterator[tuple[int, dict[str, float]]]:
+    """A read_table() whose first column is a time in seconds that increases, by up to longest_s."""
+    start_s = last_s = None
+    for line, numbers in read_table(source, columns):
+        now_s = numbers[columns[0]]
+        where = f"{_name(source)}: line {line}, {columns[0]}: {now_s:.9g}"
+        if not math.isfinite(now_s):
+            raise UserError(f"{where} must be a finite time in seconds")
+        if last_s is not None and now_s - last_s < RESOLUTION_S:
+            raise UserError(f"{where} must be later than {last_s:.9g} s")
+        start_s, last_s = now_s if start_s is None else start_s, now_s
+        if now_s - start_s > longest_s:
+            raise UserError(f"{where} must be within {longest_s:g} s of the first, {start_s:.9g} s")
+        yield line, numbers
+
+
+def _name(source: str) -> str:
+    return "standard input" if source == "-" else source
+
+
+def _check_header(name: str, header: Sequence[str], columns: Sequence[str]) -> None:
+    for column in columns:
+        if column not in header:
+            raise UserError(f"{name}: no column {column}; needed: {', '.join(columns)}")
+        if header.count(column) > 1:
+            raise UserError(f"{name}: {header.count(column)} columns {column}; one is needed")
+
+
 def _open(source: str) -> contextlib.AbstractContextManager[TextIO]:
     if source == "-":
+        if sys.stdin is None:
+            raise UserError("standard input is closed: give a file")
         return contextlib.nullcontext(sys.stdin)
     return Path(source).open(newline="", encoding="utf-8-sig")
 

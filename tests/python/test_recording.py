@@ -159,8 +159,8 @@ def test_a_trial_reads_back(trial):
         assert getattr(read, name) == pytest.approx(getattr(recording, name), abs=1e-4)
 
 
-@pytest.mark.parametrize("cell", ["", "nan", "inf", "-inf"])
-def test_a_cell_that_is_empty_or_not_finite_is_missing(trial, cell):
+@pytest.mark.parametrize("cell", ["", "nan", "inf", "-inf", "1.7e308", "-1e6"])
+def test_a_cell_that_is_empty_not_finite_or_absurd_is_missing(trial, cell):
     read = load_recording(trial("0.0500,0.0600,", f"0.0500,{cell},"))
     assert np.isnan(read.com_m[5, 0])
     assert np.isfinite(read.com_m[:5]).all()
@@ -169,8 +169,10 @@ def test_a_cell_that_is_empty_or_not_finite_is_missing(trial, cell):
 BAD = [
     ("com_y", "com_why", "com_y"),
     ("0.0100,0.0120", "0.0100,twelve", "line 3.*com_x.*'twelve'"),
-    ("\n0.0200,", "\n0.0100,", "line 4.*t.*0.01 s does not come after 0.01 s"),
+    ("\n0.0200,", "\n0.0100,", "line 4, t: 0.01 must be later than 0.01 s"),
     ("\n0.0200,", "\n,", "line 4.*t.*nan"),
+    ("\n0.0200,", "\n0.0100001,", "line 4, t: .* must be later than 0.01 s"),
+    ("\n0.0200,", "\n1e9,", "line 4, t: .* must be within 86400 s of the first, 0 s"),
 ]
 
 

@@ -179,6 +179,8 @@ def bad_files():
     yield [rows[0], "inf" + rows[1][1:]], "line 2, t_s"
     yield [rows[0], rows[1] + ",0"], "line 2: not as many cells"
     yield [rows[0], rows[1][:-2]], "line 2: not as many cells"
+    yield [*rows, "1e15" + rows[1][1:]], "line 3, t_s: 1e+15 must be within"
+    yield [rows[0] + ",t_s", rows[1] + ",3"], "2 columns t_s"
     yield [""], "no column t_s"
 
 
@@ -190,6 +192,11 @@ def test_bad_file_is_one_line_and_leaves_nothing_behind(lines, named, capsys, tm
     message = capsys.readouterr().err
     assert message.count("\n") == 1 and named in message and str(source) in message
     assert list(tmp_path.iterdir()) == [source]
+
+
+def test_bad_input_from_the_start_writes_no_header(capsys, tmp_path):
+    assert main(["supervise", "--in", str(tmp_path / "none.csv")]) == 2
+    assert capsys.readouterr().out == ""
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe\x00\x00", b"\x00" * 64])
