@@ -4,6 +4,7 @@ import argparse
 import importlib
 import os
 import pkgutil
+import signal
 import sys
 from typing import NoReturn
 
@@ -30,6 +31,13 @@ def parser() -> argparse.ArgumentParser:
     return root
 
 
+def _end_cleanly() -> None:
+    """SIGTERM and SIGHUP end a command as Ctrl-C does: the firmware is ended, logs are closed."""
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, signal.default_int_handler)
+
+
 def _forget_output() -> None:
     """What standard output still holds cannot be written; the interpreter shall not try."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -38,6 +46,7 @@ def _forget_output() -> None:
 def main(argv: list[str] | None = None) -> int:
     """Run one subcommand. 0: done and sound; 1: done, and the result is bad; 2: bad input."""
     args = parser().parse_args(argv)
+    _end_cleanly()
     try:
         if sys.stdout is None:
             raise UserError("standard output is closed: give one, such as /dev/null")

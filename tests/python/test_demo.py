@@ -1,6 +1,7 @@
 """`saddlewalk demo` and `emulate` end to end, with the real firmware process on private ports."""
 
 import csv
+import signal
 import socket
 import subprocess
 import sys
@@ -193,14 +194,15 @@ def test_emulate_ends_with_status_1_after_a_fall(ports, capsys):
         assert main(walk) == 0
 
 
-def test_demo_that_is_ended_keeps_its_logs_and_ends_the_firmware(tmp_path, ports):
+@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_demo_that_is_ended_keeps_its_logs_and_ends_the_firmware(tmp_path, ports, by):
     script = Path(sys.executable).with_name("saddlewalk")
     program = [str(script), "demo", "--out", str(tmp_path), *ports]
     with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as process:
         while "walking" not in process.stdout.readline():
             assert process.poll() is None
         time.sleep(0.5)
-        process.terminate()
+        process.send_signal(by)
         process.communicate(timeout=10)
         assert process.returncode == 130
     assert len(rows(tmp_path)) >= 4

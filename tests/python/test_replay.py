@@ -4,13 +4,17 @@ import collections
 import csv
 import dataclasses
 import math
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import can
 import numpy as np
 import pytest
 
 from saddlewalk import playback
+from saddlewalk.bus import open_bus, private_udp
 from saddlewalk.cli import main
 from saddlewalk.commands.replay import SCORE_COLUMNS
 from saddlewalk.core import Command, Core, Measurement, ffi, library
@@ -244,6 +248,21 @@ def test_a_replay_gives_the_same_bits_each_time(capsys, tmp_path):
         assert main(["replay", str(trial), "--out", str(tmp_path / run)]) == 0
         written.append((tmp_path / run).read_bytes())
     assert written[0] == written[1]
+
+
+def test_a_replay_that_is_ended_ends_the_firmware(tmp_path):
+    trial = tmp_path / "trial.csv"
+    trial.write_text(csv_text(Walk(duration_s=60).recording()))
+    spec = private_udp()
+    script = Path(sys.executable).with_name("saddlewalk")
+    program = [script, "replay", str(trial), "--can", spec, "--clock", "realtime"]
+    with open_bus(spec) as bus, subprocess.Popen(program, stdout=subprocess.PIPE) as process:
+        assert bus.recv(10)
+        process.terminate()
+        assert process.wait(10) == 130
+        while bus.recv(0):
+            pass
+        assert bus.recv(3 * TICK_S) is None
 
 
 def test_body_options_reach_the_firmware(capsys, tmp_path):

@@ -2,7 +2,6 @@
 
 import argparse
 import contextlib
-import signal
 import sys
 import time
 from collections.abc import Iterator
@@ -47,7 +46,6 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the firmware, close the logs
     config = load_config(args)
     if args.push is None and args.duration > PUSH_TIME_S:
         args.push = [(PUSH_N_S_KG * config.body_mass_kg, PUSH_TIME_S, PUSH_DIRECTION_DEG)]

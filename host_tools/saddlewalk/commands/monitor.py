@@ -33,9 +33,9 @@ def run(args: argparse.Namespace) -> int:
     bus = open_lcm(args.lcm)
     listener = Listener()
     listener.subscribe(bus)
+    if args.once:
+        return _once(bus, listener)
     try:
-        if args.once:
-            return _once(bus, listener)
         _watch(bus, listener)
     except KeyboardInterrupt:
         return 0
