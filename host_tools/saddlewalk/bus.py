@@ -31,7 +31,7 @@ _IFF_UP = 1
 class LoopbackUdpBus(can.BusABC):
     """CAN frames as UDP multicast datagrams on the loopback interface.
 
-    channel is "GROUP:PORT", or only the group. `malformed` counts datagrams that were no frame.
+    channel is "GROUP:PORT". `malformed` counts datagrams that were no frame.
     """
 
     def __init__(self, channel: str = f"{DEFAULT_GROUP}:{DEFAULT_PORT}", **kwargs: object) -> None:
@@ -85,10 +85,10 @@ class LoopbackUdpBus(can.BusABC):
 
 
 def _address(channel: str) -> tuple[str, int]:
-    group, colon, port = channel.partition(":")
+    group, _, port = channel.partition(":")
     try:
         valid = ipaddress.IPv4Address(group).is_multicast
-        number = int(port) if colon else DEFAULT_PORT
+        number = int(port)
     except ValueError:
         valid, number = False, 0
     if not valid or not 0 < number < 65536:

@@ -105,6 +105,7 @@ def test_python_can_finds_the_bus_by_name(spec):
         "vcan0",
         "udp:",
         "socketcan:",
+        f"udp:{DEFAULT_GROUP}",
         f"udp:{DEFAULT_GROUP}:0",
         f"udp:{DEFAULT_GROUP}:65536",
         "udp:127.0.0.1:5000",
