@@ -8,6 +8,7 @@ from typing import Any
 
 import can
 
+from saddlewalk.core import Command
 from saddlewalk.emulator import LEFT, RIGHT, STEP_S, Measurement, Plan, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages, TickReader, next_tick
@@ -18,12 +19,6 @@ SILENCE_S = 3.0
 RESEND_S = 0.25
 
 MODE_STAND, MODE_WALK = 0, 1
-
-
-@dataclass(frozen=True)
-class Command:
-    speed_m_s: float
-    heel_strike_rad: float
 
 
 @dataclass(frozen=True)

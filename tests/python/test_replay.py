@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import can
+import cantools
 import numpy as np
 import pytest
 
@@ -20,24 +21,21 @@ from saddlewalk.commands.replay import SCORE_COLUMNS
 from saddlewalk.core import Command, Core, Measurement, ffi, library
 from saddlewalk.errors import UserError
 from saddlewalk.gait_events import analyse
+from saddlewalk.paths import CHECKOUT
 from saddlewalk.playback import measurements, play_lockstep, play_realtime
-from saddlewalk.ticks import TICK_S, Messages
+from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages
 from saddlewalk.wire import Receiver, Sender
 from synthetic_walk import Walk, csv_text
 
 HEIGHT_M, MASS_KG = 1.79, 63.3
+DATABASE = cantools.database.load_file(CHECKOUT / "firmware/wire/saddlewalk.dbc")
 NO_PLAN = {
-    name: dict.fromkeys(signals.split(), 0.0)
-    for name, signals in {
-        "PLAN_COM": "X Y Z",
-        "PLAN_COM_VELOCITY": "VX VY VZ",
-        "PLAN_LEFT": "X Y Z",
-        "PLAN_RIGHT": "X Y Z",
-        "PLAN_SWING": "VX VZ TIME_TO_HEEL_STRIKE",
-        "PLAN_LANDING": "X Y LEG_LENGTH",
-        "PLAN_ANKLE": "TOE_OFF HEEL_STRIKE SPEED",
-        "PLAN_STEP": "VALID SUPPORT PHASE THETA STEP_LENGTH STEP_COUNT",
-    }.items()
+    name: {
+        signal.name: 0.0
+        for signal in DATABASE.get_message_by_name(name).signals
+        if signal.name not in ("CRC", "COUNTER")
+    }
+    for name in PLAN_MESSAGES
 }
 
 

@@ -9,8 +9,8 @@ from saddlewalk.errors import UserError
 from saddlewalk.options import add_gait_options, number_in, whole_number_in
 
 if TYPE_CHECKING:
+    from saddlewalk.core import Command
     from saddlewalk.emulator import Noise, Push, Wearer
-    from saddlewalk.exoskeleton import Command
 
 IMPULSE_MAX_N_S = 1000.0
 DURATION_MAX_S = 86400.0
@@ -116,7 +116,7 @@ def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer"
 
 
 def command_of(args: argparse.Namespace) -> "Command":
-    from saddlewalk.exoskeleton import Command
+    from saddlewalk.core import Command
 
     return Command(args.speed, math.radians(args.hs_angle))
 
