@@ -16,6 +16,7 @@ from saddlewalk.wire import Sender
 
 WAKE_UP_S = 0.01  # realtime: measurements at 100 Hz
 SILENCE_S = 3.0
+START_TICKS = 125  # of standing before a walk is given up: 10 s
 RESEND_S = 0.25
 
 MODE_STAND, MODE_WALK = 0, 1
@@ -96,7 +97,7 @@ class Exoskeleton:
     def run(self, clock: str, duration_s: float) -> None:
         """Walk for duration_s by the clock `realtime` or `lockstep`.
 
-        Raises UserError if the firmware is silent.
+        Raises UserError if the firmware is silent or plans no walk.
         """
         (self._run_lockstep if clock == "lockstep" else self._run_realtime)(duration_s)
 
@@ -171,6 +172,11 @@ class Exoskeleton:
             self._mode = MODE_WALK if plan is None else MODE_STAND
             plan = None
         self.ticks += 1
+        if self._wearer.time_s == 0 and self.ticks > START_TICKS:
+            raise UserError(
+                f"the firmware on {self._bus.channel_info} answers but does not do as commanded: "
+                "give both the same --clock and --lcm"
+            )
         self.health = messages["HEALTH"]
         self._wearer.follow(plan)
         tick = Tick(self._wearer.time_s, messages, plan)

@@ -183,6 +183,17 @@ def test_emulate_without_firmware_says_so(ports, capsys, monkeypatch):
         assert told.count("\n") == 1 and "silent" in told and "saddlewalk-host" in told
 
 
+def test_emulate_gives_up_on_firmware_that_does_not_hear_it(ports, capsys, monkeypatch):
+    from saddlewalk import exoskeleton
+    from saddlewalk.host import running_host
+
+    monkeypatch.setattr(exoskeleton, "START_TICKS", 5)
+    with running_host(f"--can={ports[1]}", "--lcm=none"):
+        assert main(["emulate", *ports]) == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1 and "not do as commanded" in told and "--lcm" in told
+
+
 def test_emulate_ends_with_status_1_after_a_fall(ports, capsys):
     from saddlewalk.host import running_host
 
