@@ -59,6 +59,7 @@ def walk(core: Any, speed_m_s: float, hs_angle_deg: float, dt_s: float) -> Itera
 
     command = Command(speed_m_s, math.radians(hs_angle_deg))
     nobody = Measurement()
+    core.join(command)
     ticks_per_row = math.ceil(dt_s / LONGEST_TICK_S)
     yield 0.0, core.tick(0, command, nobody)
     row = 0
