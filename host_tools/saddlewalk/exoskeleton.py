@@ -19,7 +19,8 @@ RESEND_S = 0.25
 
 MODE_STAND, MODE_WALK = 0, 1
 PLAN_MESSAGES = (
-    "PLAN_COM PLAN_COM_VELOCITY PLAN_LEFT PLAN_RIGHT PLAN_SWING PLAN_LANDING PLAN_ANKLE PLAN_STEP"
+    "PLAN_COM PLAN_COM_VELOCITY PLAN_LEFT PLAN_RIGHT PLAN_SWING PLAN_LANDING PLAN_ANKLE PLAN_STEP "
+    "PLAN_EVENTS PLAN_PITCH"
 ).split()
 TICK_MESSAGES = {*PLAN_MESSAGES, "SCORES_STEP", "SCORES_MARGIN", "SCORES_FORCE", "HEALTH"}
 
@@ -73,7 +74,7 @@ def plan_of(messages: Messages) -> Plan | None:
         foot_heights_m=(left["Z"], right["Z"]),
         swing_velocity_m_s=swing["VX"],
         swing_rise_m_s=swing["VZ"],
-        time_to_heel_strike_s=swing["TIME_TO_HEEL_STRIKE"],
+        time_to_heel_strike_s=messages["PLAN_EVENTS"]["TIME_TO_HEEL_STRIKE"],
         landing_m=complex(landing["X"], landing["Y"]),
         leg_length_m=landing["LEG_LENGTH"],
     )
