@@ -11,6 +11,9 @@
 #define POSITION_PER_2_POW_MINUS_40_M ((int64_t)MICROMETRES_ODD_PART * 256)
 #define M_PER_2_POW_32 (1.0f / (15625.0f * 65536.0f))
 
+/* 2^-27 um/s in units of speed, times 2^36. */
+#define SPEED_PER_2_POW_MINUS_27_UM_S ((int64_t)2251799814)
+
 /* value * scale * fine as an integer, truncated; |value * scale| < 2^31. Both steps are exact. */
 static int64_t to_integer(float value, float scale, float fine)
 {
@@ -44,6 +47,15 @@ saddle_fixed_t saddle_speed_from_m_s(float value_m_s)
 float saddle_speed_to_m_s(saddle_fixed_t speed)
 {
     return (float)(int32_t)(speed / ((int64_t)1 << 13)) * (1.0f / 536870912.0f);
+}
+
+saddle_fixed_t saddle_speed_change(float rate_m_s2, uint32_t dt_us)
+{
+    const int64_t product = (int64_t)(int32_t)(rate_m_s2 * TWO_POW_27) * (int64_t)dt_us;
+    const int64_t upper = product / ((int64_t)1 << 27);
+    const int64_t lower = product - upper * ((int64_t)1 << 27);
+    return upper * SPEED_PER_2_POW_MINUS_27_UM_S / ((int64_t)1 << 9) +
+           lower * SPEED_PER_2_POW_MINUS_27_UM_S / ((int64_t)1 << 36);
 }
 
 saddle_fixed_t saddle_speed_times_s(saddle_fixed_t speed, float time_s)

@@ -2,6 +2,9 @@
 #include <saddlewalk/saddle_math.h>
 #include <saddlewalk/speed_profile.h>
 
+/* What fixed point can count: more than any configuration accepts, but for a stop's last instants. */
+#define RATE_MAX_M_S2 15.9f
+
 static float magnitude(float x)
 {
     return x < 0.0f ? -x : x;
@@ -15,19 +18,21 @@ static float acceleration(const saddle_speed_profile_t *profile)
 
 saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t dt_us)
 {
-    const float dt_s = (float)dt_us * 1.0e-6f;
+    const float rate_m_s2 = saddle_clamp(profile->rate_m_s2, 0.0f, RATE_MAX_M_S2);
     const float wanted_m_s = saddle_speed_to_m_s(profile->target - profile->speed);
-    const float possible_m_s = acceleration(profile) * dt_s;
-    float change_m_s = possible_m_s;
+    const float dt_s = (float)dt_us * 1.0e-6f;
+    float change_m_s = wanted_m_s;
     float change_time_s = dt_s;
-    saddle_fixed_t end = profile->speed + saddle_speed_from_m_s(possible_m_s);
-    if (magnitude(wanted_m_s) <= magnitude(possible_m_s)) {
-        end = profile->target;
-        change_m_s = wanted_m_s;
-        change_time_s = profile->rate_m_s2 > 0.0f ? magnitude(wanted_m_s) / profile->rate_m_s2 : 0.0f;
+    if (magnitude(wanted_m_s) <= rate_m_s2 * dt_s) {
+        change_time_s = rate_m_s2 > 0.0f ? magnitude(wanted_m_s) / rate_m_s2 : 0.0f;
+        profile->speed = profile->target;
+    } else {
+        const saddle_fixed_t change = saddle_speed_change(rate_m_s2, dt_us);
+        change_m_s = saddle_speed_to_m_s(wanted_m_s < 0.0f ? -change : change);
+        profile->speed += wanted_m_s < 0.0f ? -change : change;
     }
-    profile->speed = end;
-    return end * (int64_t)dt_us - saddle_position_from_m(0.5f * change_m_s * change_time_s);
+    return profile->speed * (int64_t)dt_us -
+           saddle_position_from_m(0.5f * change_m_s * change_time_s);
 }
 
 /* Way on which the target is reached. */
@@ -52,7 +57,13 @@ saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile,
     if (way_m >= change_way_m(profile, speed_m_s, target_m_s)) {
         return profile->target;
     }
-    return saddle_speed_from_m_s(speed_on_the_way_m_s(profile, speed_m_s, way_m));
+    const float sum_m_s = speed_m_s + speed_on_the_way_m_s(profile, speed_m_s, way_m);
+    if (sum_m_s <= 0.0f) {
+        return 0;
+    }
+    /* The change alone is rounded: the steps' lengths follow from this speed and add up. */
+    const float change_m_s = 2.0f * acceleration(profile) * way_m / sum_m_s;
+    return profile->speed + saddle_speed_from_m_s(change_m_s);
 }
 
 float saddle_profile_time_s(const saddle_speed_profile_t *profile, float way_m)

@@ -23,6 +23,10 @@ saddle_fixed_t saddle_speed_from_m_s(float value_m_s);
 
 float saddle_speed_to_m_s(saddle_fixed_t speed);
 
+/** What a rate, |rate_m_s2| < 16, makes in dt_us <= 10^7; exact to 2^-41 m/s and 2 parts in 10^10 of
+ *  it, for a rate that is a multiple of 2^-27. */
+saddle_fixed_t saddle_speed_change(float rate_m_s2, uint32_t dt_us);
+
 /** The way at a constant speed >= 0 in time_s in [0, 1]; exact to 2^-41 m. */
 saddle_fixed_t saddle_speed_times_s(saddle_fixed_t speed, float time_s);
 
