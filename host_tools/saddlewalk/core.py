@@ -10,6 +10,7 @@ from saddlewalk.errors import UserError
 from saddlewalk.paths import built
 
 AGE_NEVER_US = 0xFFFFFFFF
+TIME_MAX_S = 1000.0  # SADDLE_TIME_MAX_S: an event of a plan that is not foreseen
 
 
 @functools.cache

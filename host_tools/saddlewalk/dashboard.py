@@ -12,8 +12,9 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
+from saddlewalk.core import TIME_MAX_S
+
 SILENT_AFTER_S = 1.0
-NEVER_S = 1000.0  # SADDLE_TIME_MAX_S
 
 # By number, as saddle_status_t and saddle_mode_t; bit 0 first, as saddle_limit_t, saddle_fault_t.
 STATUSES = (
@@ -87,7 +88,7 @@ def gait(plan) -> str:
 
 
 def _heel_strike(plan) -> str:
-    foreseen = plan.time_to_heel_strike_s < NEVER_S
+    foreseen = plan.time_to_heel_strike_s < TIME_MAX_S
     return f"heel strike in {plan.time_to_heel_strike_s:.2f} s" if foreseen else "no heel strike"
 
 

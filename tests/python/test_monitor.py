@@ -14,7 +14,7 @@ import lcm
 import pytest
 from rich.console import Console
 
-from saddlewalk import dashboard, paths
+from saddlewalk import core, dashboard, paths
 from saddlewalk.commands.monitor import CHANNELS, Listener
 from saddlewalk.lcm_types import health_t, plan_t, scores_t
 
@@ -136,6 +136,12 @@ def test_faults_limits_and_status_are_named():
 def test_names_are_those_of_the_core(header, numbered, names):
     text = (paths.CHECKOUT / "firmware/core/include/saddlewalk" / header).read_text()
     assert re.findall(numbered, text) == list(names)
+
+
+def test_the_longest_time_is_that_of_the_core():
+    header = paths.CHECKOUT / "firmware/core/include/saddlewalk/speed_profile.h"
+    (defined,) = re.findall(r"#define SADDLE_TIME_MAX_S (\S+)f", header.read_text())
+    assert float(defined) == core.TIME_MAX_S
 
 
 @pytest.mark.parametrize(
