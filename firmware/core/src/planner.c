@@ -16,7 +16,7 @@
 
 /* How far a plan is foretold: within the range of fixed-point positions, and of use. */
 #define WAY_MAX_M 1.9f
-#define HORIZON_MAX_US 5.0e6f
+#define HORIZON_MAX_S 5.0f
 #define STANDING_HORIZON_US 500000u
 
 static saddle_side_t other_side(saddle_side_t side)
@@ -308,7 +308,9 @@ static void advance_cycle(saddle_planner_t *planner, const saddle_config_t *conf
     if (arrived) {
         const saddle_pose_t pose = saddle_cycle_pose(cycle, config, body);
         after_last_swing(planner, config, body, pose.com_m.y);
-        planner->shift_us = planner->shifting ? rest_us : 0u;
+        if (planner->shifting) {
+            advance_shift(planner, config, body, rest_us);
+        }
     }
 }
 
@@ -325,18 +327,14 @@ void saddle_planner_advance(saddle_planner_t *planner, const saddle_config_t *co
 uint32_t saddle_planner_horizon_us(const saddle_planner_t *planner)
 {
     const saddle_cycle_t *cycle = &planner->cycle;
-    const saddle_fixed_t speed = cycle->profile.speed;
-    const saddle_fixed_t target = cycle->profile.target;
     if (planner->shifting || planner->mode == (uint8_t)SADDLE_MODE_STANDING) {
         return STANDING_HORIZON_US;
     }
-    const float fastest_m_s = saddle_speed_to_m_s(speed > target ? speed : target);
     const float step_m = before_landing(cycle) ? 2.0f : 3.0f;
     const float way_m = saddle_clamp(
         saddle_cycle_way_to_via_point_m(cycle) + step_m * cycle->quarter.length_m, 0.0f, WAY_MAX_M);
-    return way_m < fastest_m_s * 1.0e-6f * HORIZON_MAX_US
-               ? (uint32_t)(1.0e6f * way_m / fastest_m_s)
-               : (uint32_t)HORIZON_MAX_US;
+    const float time_s = saddle_profile_time_s(&cycle->profile, way_m);
+    return (uint32_t)(1.0e6f * saddle_clamp(time_s, 0.0f, HORIZON_MAX_S));
 }
 
 /* The measured landing, once, as soon as the new stance foot is on the ground. */
@@ -400,27 +398,62 @@ uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_config_t 
     return limits;
 }
 
-static void write_events(const saddle_planner_t *planner, const saddle_config_t *config,
-                         saddle_plan_t *plan)
+/* Half of the step after the next via point, or of the running one; 0 beside the stance foot. */
+static float half_step_to_landing_m(const saddle_cycle_t *cycle, const saddle_config_t *config,
+                                    float way_m)
 {
-    const saddle_cycle_t *cycle = &planner->cycle;
-    if (planner->shifting || planner->mode == (uint8_t)SADDLE_MODE_STANDING) {
-        const float shifted_s = (float)planner->shift_us * 1.0e-6f;
-        plan->time_to_via_point_s = planner->shifting ? config->shift_time_s - shifted_s : 0.0f;
+    if (before_landing(cycle)) {
+        return cycle->quarter.length_m;
+    }
+    if (cycle->last_swing) {
+        return 0.0f;
+    }
+    const saddle_fixed_t speed = saddle_profile_speed_after(&cycle->profile, way_m);
+    return saddle_position_to_m(
+        saddle_half_step(config, other_side(cycle->quarter.stance), speed));
+}
+
+/* A last swing brakes evenly, to rest at its end: twice the time that its speed would take. */
+static float time_of_last_swing_s(const saddle_cycle_t *cycle, float way_m)
+{
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    return speed_m_s > 0.0f ? saddle_clamp(2.0f * way_m / speed_m_s, 0.0f, SADDLE_TIME_MAX_S)
+                            : 0.0f;
+}
+
+static void write_step_events(const saddle_cycle_t *cycle, const saddle_config_t *config,
+                              saddle_plan_t *plan)
+{
+    const float way_m = saddle_cycle_way_to_via_point_m(cycle);
+    const float half_step_m = half_step_to_landing_m(cycle, config, way_m);
+    plan->landing_m.x = 2.0f * half_step_m;
+    plan->landing_m.y = cycle->stance_y_m + cycle->swing.line_y_m;
+    if (cycle->last_swing && !before_landing(cycle) && cycle->profile.target == 0) {
+        plan->time_to_via_point_s = time_of_last_swing_s(cycle, way_m);
         plan->time_to_heel_strike_s = SADDLE_TIME_MAX_S;
         plan->time_to_toe_off_s = SADDLE_TIME_MAX_S;
         return;
     }
-    const float way_m = saddle_cycle_way_to_via_point_m(cycle);
-    const float rest_m = before_landing(cycle) ? 0.0f : cycle->quarter.length_m;
+    const float landing_m = before_landing(cycle) ? way_m : way_m + half_step_m;
     const float lead_m =
         config->cop_range_m * (1.0f - saddle_cos(cycle->next_heel_strike_rad));
-    const float heel_m = way_m + rest_m > lead_m ? way_m + rest_m - lead_m : 0.0f;
+    const float heel_m = landing_m > lead_m ? landing_m - lead_m : 0.0f;
     plan->time_to_via_point_s = saddle_profile_time_s(&cycle->profile, way_m);
-    plan->time_to_toe_off_s = saddle_profile_time_s(&cycle->profile, way_m + rest_m);
+    plan->time_to_toe_off_s = saddle_profile_time_s(&cycle->profile, landing_m);
     plan->time_to_heel_strike_s = saddle_profile_time_s(&cycle->profile, heel_m);
-    plan->landing_m.x = 2.0f * cycle->quarter.length_m;
-    plan->landing_m.y = cycle->stance_y_m + cycle->swing.line_y_m;
+}
+
+static void write_events(const saddle_planner_t *planner, const saddle_config_t *config,
+                         saddle_plan_t *plan)
+{
+    if (!planner->shifting && planner->mode != (uint8_t)SADDLE_MODE_STANDING) {
+        write_step_events(&planner->cycle, config, plan);
+        return;
+    }
+    const float shifted_s = (float)planner->shift_us * 1.0e-6f;
+    plan->time_to_via_point_s = planner->shifting ? config->shift_time_s - shifted_s : 0.0f;
+    plan->time_to_heel_strike_s = SADDLE_TIME_MAX_S;
+    plan->time_to_toe_off_s = SADDLE_TIME_MAX_S;
 }
 
 static void write_standing(const saddle_planner_t *planner, const saddle_config_t *config,
