@@ -106,7 +106,7 @@ static const char *check_step_width(const saddle_config_t *config)
 }
 
 /* The reach peak_speed / (2 w_n) must exceed the shortest half step, and the pendulum must reach
- * from there to the CoM without lying flat. */
+ * from there, on the longer side, to the CoM without lying flat. */
 static const char *check_reach(const saddle_config_t *config)
 {
     const float pendulum_m = config->pendulum_ratio * config->body_height_m;
@@ -121,7 +121,9 @@ static const char *check_reach(const saddle_config_t *config)
     if (reach_m2 < shortest_m * shortest_m) {
         return "half_step_intercept_m";
     }
-    if (reach_m2 + width_m * width_m > 0.8f * pendulum_m * pendulum_m) {
+    const float factor =
+        larger(1.0f, larger(config->step_length_factor_left, config->step_length_factor_right));
+    if (factor * factor * reach_m2 + width_m * width_m > 0.8f * pendulum_m * pendulum_m) {
         return "peak_speed_m_s";
     }
     return NULL;

@@ -3,13 +3,18 @@
 #include <saddlewalk/gait_cycle.h>
 #include <saddlewalk/saddle_math.h>
 
-#define VIA_POINTS_A_TICK 4
+/* A quarter lasts at least 36 ms, [E6] at its extremes, and a tick at most 250 ms. */
+#define VIA_POINTS_A_TICK 8
 #define SPEED_MIN_M_S 0.01f /* slower transitions are shaped as if this fast */
 
-/* A landing is taken over in the first half of the quarter after it, and only if it leaves the CoM
- * this far behind the foot and the feet this far apart. */
+/* A landing is taken over in the first half of the quarter after it and the first quarter of the
+ * swing, and only if it leaves the CoM this far behind the foot and the feet this far apart. */
 #define LANDING_AHEAD_MIN_M 0.02f
 #define LANDING_WIDTH_MIN_M 0.02f
+#define LANDING_AIR_MAX 0.25f
+
+/* The CoM stays within this share of the pendulum's length from the stance foot, squared. */
+#define REACH_SHARE 0.8f
 
 static bool towards_saddle(const saddle_cycle_t *cycle)
 {
@@ -87,14 +92,14 @@ static void pass_foot(saddle_cycle_t *cycle, const saddle_config_t *config,
 }
 
 /* The line on which the next swing foot travels, from the new stance CoP: at its place beside the
- * walking line, but no nearer to the stance foot than half a step width. */
+ * walking line, but between half and twice a step width from the stance foot. */
 static float swing_line_y_m(const saddle_cycle_t *cycle, const saddle_config_t *config,
                             saddle_side_t foot, float speed_m_s)
 {
     const float line_y_m = saddle_landing_y_m(config, foot, speed_m_s) - cycle->stance_y_m;
-    const float nearest_m = 0.5f * saddle_step_width_m(config, speed_m_s);
+    const float width_m = saddle_step_width_m(config, speed_m_s);
     const float outward = foot == SADDLE_LEFT ? 1.0f : -1.0f;
-    return outward * line_y_m > nearest_m ? line_y_m : outward * nearest_m;
+    return outward * saddle_clamp(outward * line_y_m, 0.5f * width_m, 2.0f * width_m);
 }
 
 /* Let the other foot, at lifted_m, begin a swing: what it is off its line fades out. */
@@ -130,7 +135,7 @@ static void pass_saddle(saddle_cycle_t *cycle, const saddle_config_t *config,
 
     cycle->phase++;
     cycle->step_count++;
-    cycle->position -= 2 * cycle->quarter_length;
+    cycle->position = -cycle->quarter_length;
     cycle->origin_x_nm += 2 * saddle_position_to_nm(cycle->quarter_length);
     cycle->stance_y_m += step_y_m;
     cycle->heel_strike_rad = cycle->next_heel_strike_rad;
@@ -155,7 +160,8 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_config_t *config,
     cycle->stance_y_m = start->stance_y_m;
     cycle->last_swing = false;
     cycle->lift_pitch_rad = 0.0f;
-    cycle->last_step_m = start->other_m;
+    cycle->last_step_m.x = -start->other_m.x;
+    cycle->last_step_m.y = -start->other_m.y;
     cycle->quarter_length = beside ? saddle_half_step(config, other_side(stance), start->speed)
                                    : saddle_position_from_m(-0.5f * start->other_m.x);
     cycle->position = beside ? 0 : -cycle->quarter_length;
@@ -188,10 +194,7 @@ static bool comes_to_rest(const saddle_cycle_t *cycle, uint32_t dt_us, uint32_t 
     }
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
     const float way_m = saddle_cycle_way_to_via_point_m(cycle);
-    if (2.0f * way_m >= speed_m_s * SADDLE_TIME_MAX_S) {
-        return false;
-    }
-    const float time_us = 2.0e6f * way_m / speed_m_s;
+    const float time_us = speed_m_s > 0.0f ? 2.0e6f * way_m / speed_m_s : 0.0f;
     if (time_us > (float)dt_us) {
         return false;
     }
@@ -236,25 +239,56 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_config_t *conf
     return 0;
 }
 
+/* Progress of the running swing through the air, in the quarter after a landing. */
+static float air_after_landing(const saddle_cycle_t *cycle, float x_m)
+{
+    return 0.5f * (1.0f + x_m / cycle->quarter.length_m) / cycle->swing.land_progress;
+}
+
+/* Can the walk go on from a landing after step_m, with the CoM at com_m from the stance foot? */
+static bool landing_usable(const saddle_cycle_t *cycle, const saddle_config_t *config,
+                           const saddle_body_t *body, saddle_vec2_t step_m, saddle_vec2_t com_m)
+{
+    const float outward = cycle->quarter.stance == SADDLE_LEFT ? 1.0f : -1.0f;
+    const float reach_m2 = REACH_SHARE * body->pendulum_m * body->pendulum_m;
+    return saddle_in_range(-com_m.x, LANDING_AHEAD_MIN_M, body->half_step_max_m) &&
+           saddle_in_range(outward * step_m.y, LANDING_WIDTH_MIN_M,
+                           2.0f * config->step_width_slow_m) &&
+           com_m.x * com_m.x + com_m.y * com_m.y < reach_m2;
+}
+
+/* The measured landing changed the line: what the swing foot is off it from here on fades out. */
+static void redirect_swing(saddle_cycle_t *cycle, const saddle_config_t *config,
+                           saddle_vec2_t foot_m, float speed_m_s)
+{
+    const float x_m = saddle_position_to_m(cycle->position);
+    const float fade = 1.0f - saddle_min_jerk(2.0f * air_after_landing(cycle, x_m));
+    saddle_swing_t *swing = &cycle->swing;
+    swing->line_y_m =
+        swing_line_y_m(cycle, config, other_side(cycle->quarter.stance), speed_m_s);
+    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral_reference(cycle, x_m));
+    swing->offset_m.x = (foot_m.x - line.value) / fade;
+    swing->offset_m.y = (foot_m.y - swing->line_y_m) / fade;
+}
+
 bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
                        const saddle_body_t *body, saddle_vec2_t step_m)
 {
     const saddle_side_t stance = cycle->quarter.stance;
-    const float outward = stance == SADDLE_LEFT ? 1.0f : -1.0f;
     const float dx_m = step_m.x - cycle->last_step_m.x;
     const float dy_m = step_m.y - cycle->last_step_m.y;
     const float old_x_m = saddle_position_to_m(cycle->position);
     const float x_m = old_x_m - dx_m;
+    saddle_sample_t lateral = lateral_at(cycle, old_x_m);
+    lateral.value -= dy_m;
     if (towards_saddle(cycle) || -2.0f * old_x_m < cycle->quarter.length_m ||
-        -x_m < LANDING_AHEAD_MIN_M || -x_m > body->half_step_max_m ||
-        outward * step_m.y < LANDING_WIDTH_MIN_M ||
-        outward * step_m.y > 2.0f * config->step_width_slow_m) {
+        air_after_landing(cycle, old_x_m) > LANDING_AIR_MAX ||
+        !landing_usable(cycle, config, body, step_m, (saddle_vec2_t){x_m, lateral.value})) {
         return false;
     }
     const saddle_pose_t pose = saddle_cycle_pose(cycle, config, body);
-    saddle_sample_t lateral = lateral_at(cycle, old_x_m);
     const saddle_sample_t vertical = vertical_at(cycle, body, old_x_m);
-    lateral.value -= dy_m;
+    const saddle_vec2_t swing_m = {pose.swing.position_m.x - dx_m, pose.swing.position_m.y - dy_m};
     const float length_m = cycle->quarter.length_m * x_m / old_x_m;
     cycle->position = saddle_position_from_m(x_m);
     cycle->quarter_length = saddle_position_from_m(length_m);
@@ -265,14 +299,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
     reshape(cycle, body,
             saddle_quarter(config, stance, length_m, magnitude(step_m.y), speed_m_s), lateral,
             vertical);
-
-    saddle_swing_t *swing = &cycle->swing;
-    const float air = 0.5f * (1.0f + x_m / length_m) / swing->land_progress;
-    const float fade = 1.0f - saddle_min_jerk(2.0f * air);
-    swing->line_y_m = swing_line_y_m(cycle, config, other_side(stance), speed_m_s);
-    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral_reference(cycle, x_m));
-    swing->offset_m.x = (pose.swing.position_m.x - dx_m - line.value) / fade;
-    swing->offset_m.y = (pose.swing.position_m.y - dy_m - swing->line_y_m) / fade;
+    redirect_swing(cycle, config, swing_m, speed_m_s);
     return true;
 }
 
