@@ -1,5 +1,5 @@
-/** The gait cycle: quarter after quarter, driven by the way of the CoM, so that any change of speed
- *  or of the feet meets it without a jump. */
+/** [E23] The gait cycle: quarter after quarter, driven by the way of the CoM, so that any change of
+ *  speed or of the feet meets it without a jump. */
 #ifndef SADDLEWALK_GAIT_CYCLE_H
 #define SADDLEWALK_GAIT_CYCLE_H
 

@@ -1,4 +1,4 @@
-/** Motion along x: the speed goes to its target at a constant rate and stays there. */
+/** [E23] Motion along x: the speed goes to its target at a constant rate and stays there. */
 #ifndef SADDLEWALK_SPEED_PROFILE_H
 #define SADDLEWALK_SPEED_PROFILE_H
 
