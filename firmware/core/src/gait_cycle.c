@@ -13,6 +13,10 @@
 #define LANDING_WIDTH_MIN_M 0.02f
 #define LANDING_AIR_MAX 0.25f
 
+/* A longer way to the foot via point, of the planned one, is no misplaced landing: at the planned
+ * path's slope the CoM would leave the feet sideways. */
+#define LANDING_STRETCH_MAX 2.0f
+
 /* The CoM stays within this share of the pendulum's length from the stance foot, squared. */
 #define REACH_SHARE 0.8f
 
@@ -283,6 +287,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
     lateral.value -= dy_m;
     if (towards_saddle(cycle) || -2.0f * old_x_m < cycle->quarter.length_m ||
         air_after_landing(cycle, old_x_m) > LANDING_AIR_MAX ||
+        x_m < LANDING_STRETCH_MAX * old_x_m ||
         !landing_usable(cycle, config, body, step_m, (saddle_vec2_t){x_m, lateral.value})) {
         return false;
     }

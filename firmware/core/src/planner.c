@@ -11,8 +11,8 @@
 /* Feet that a walk can start from are at least this far apart across. */
 #define START_WIDTH_MIN_M 0.05f
 
-/* A stop brakes this much before its last moment, for the ticks are 80 ms apart. */
-#define BRAKING_AHEAD_S 0.1f
+/* A last swing, a shift and a first step may follow each other within one long tick. */
+#define MODES_A_TICK 4
 
 /* How far a plan is foretold: within the range of fixed-point positions, and of use. */
 #define WAY_MAX_M 1.9f
@@ -146,6 +146,15 @@ static float standing_height_m(const saddle_planner_t *planner, const saddle_bod
     return sqrtf(body->pendulum_m * body->pendulum_m - nearer_m2);
 }
 
+/* Towards the wanted speed. */
+static void walk_on(saddle_planner_t *planner, const saddle_config_t *config)
+{
+    planner->braking = false;
+    planner->cycle.last_swing = false;
+    planner->cycle.profile.target = saddle_speed_from_m_s(planner->speed_m_s);
+    planner->cycle.profile.rate_m_s2 = config->acceleration_m_s2;
+}
+
 /* The CoM stands over the first stance leg: take the first step. */
 static void begin_steps(saddle_planner_t *planner, const saddle_config_t *config,
                         const saddle_body_t *body)
@@ -159,10 +168,11 @@ static void begin_steps(saddle_planner_t *planner, const saddle_config_t *config
     };
     planner->mode = (uint8_t)SADDLE_MODE_STARTING;
     planner->shifting = false;
-    planner->braking = false;
+    planner->landing_open = false;
     planner->cycle.heel_strike_rad = 0.0f;
     planner->cycle.next_heel_strike_rad = planner->heel_strike_rad;
     saddle_cycle_begin(&planner->cycle, config, body, &start);
+    walk_on(planner, config);
 }
 
 /* A last swing has come down beside the stance foot. */
@@ -211,14 +221,18 @@ static void after_shift(saddle_planner_t *planner, const saddle_config_t *config
     }
 }
 
-static void advance_shift(saddle_planner_t *planner, const saddle_config_t *config,
-                          const saddle_body_t *body, uint32_t dt_us)
+/* Returns the microseconds left for what follows the shift. */
+static uint32_t advance_shift(saddle_planner_t *planner, const saddle_config_t *config,
+                              const saddle_body_t *body, uint32_t dt_us)
 {
     const uint32_t duration_us = (uint32_t)(config->shift_time_s * 1.0e6f);
     planner->shift_us += dt_us;
-    if (planner->shift_us >= duration_us) {
-        after_shift(planner, config, body);
+    if (planner->shift_us < duration_us) {
+        return 0;
     }
+    const uint32_t rest_us = planner->shift_us - duration_us;
+    after_shift(planner, config, body);
+    return rest_us;
 }
 
 /* Way to the place where a stop can end: the foot via point after the next landing. */
@@ -251,25 +265,32 @@ static void choose_last_swing(saddle_planner_t *planner, const saddle_config_t *
     }
 }
 
+/* The speed from which, after the longest tick at it, a stop within way_m brakes as hard as allowed:
+ * below it there is time until the next tick. */
+static float latest_braking_speed_m_s(const saddle_config_t *config, float way_m)
+{
+    const float rate_m_s2 = config->acceleration_m_s2;
+    const float in_a_tick_m_s = rate_m_s2 * config->tick_max_s;
+    return sqrtf(in_a_tick_m_s * in_a_tick_m_s + 2.0f * rate_m_s2 * way_m) - in_a_tick_m_s;
+}
+
 static void profile_of_stop(saddle_planner_t *planner, const saddle_config_t *config)
 {
-    saddle_speed_profile_t *profile = &planner->cycle.profile;
+    saddle_cycle_t *cycle = &planner->cycle;
+    saddle_speed_profile_t *profile = &cycle->profile;
     const float speed_m_s = saddle_speed_to_m_s(profile->speed);
-    const float crawling_m_s = crawl_m_s(config);
-    const float rate_m_s2 = config->acceleration_m_s2;
     choose_last_swing(planner, config, speed_m_s);
-    const float way_m = stopping_way_m(&planner->cycle);
-    const float ahead_m = way_m - BRAKING_AHEAD_S * speed_m_s;
-    planner->braking =
-        planner->cycle.last_swing &&
-        (planner->braking || speed_m_s > crawling_m_s ||
-         speed_m_s * speed_m_s >= 2.0f * rate_m_s2 * ahead_m);
+    const float way_m = stopping_way_m(cycle);
+    const float latest_m_s = latest_braking_speed_m_s(config, way_m);
+    const float crawl = crawl_m_s(config);
+    const float slow_m_s = cycle->last_swing && latest_m_s < crawl ? latest_m_s : crawl;
+    planner->braking = cycle->last_swing && (planner->braking || speed_m_s >= slow_m_s);
     if (planner->braking) {
         profile->target = 0;
         profile->rate_m_s2 = way_m > 0.0f ? speed_m_s * speed_m_s / (2.0f * way_m) : 0.0f;
     } else {
-        profile->target = saddle_speed_from_m_s(crawling_m_s);
-        profile->rate_m_s2 = rate_m_s2;
+        profile->target = saddle_speed_from_m_s(slow_m_s);
+        profile->rate_m_s2 = config->acceleration_m_s2;
     }
 }
 
@@ -278,20 +299,18 @@ static void choose_profile(saddle_planner_t *planner, const saddle_config_t *con
     saddle_cycle_t *cycle = &planner->cycle;
     const bool must_end = cycle->last_swing && !before_landing(cycle);
     if (planner->speed_m_s > 0.0f && !must_end) {
-        cycle->last_swing = false;
-        planner->braking = false;
         if (planner->mode == (uint8_t)SADDLE_MODE_STOPPING) {
             planner->mode = (uint8_t)SADDLE_MODE_WALKING;
         }
-        cycle->profile.target = saddle_speed_from_m_s(planner->speed_m_s);
-        cycle->profile.rate_m_s2 = config->acceleration_m_s2;
+        walk_on(planner, config);
         return;
     }
     planner->mode = (uint8_t)SADDLE_MODE_STOPPING;
     profile_of_stop(planner, config);
 }
 
-static void advance_cycle(saddle_planner_t *planner, const saddle_config_t *config,
+/* Returns the microseconds left for what follows a last swing. */
+static uint32_t advance_cycle(saddle_planner_t *planner, const saddle_config_t *config,
                           const saddle_body_t *body, uint32_t dt_us)
 {
     saddle_cycle_t *cycle = &planner->cycle;
@@ -308,19 +327,22 @@ static void advance_cycle(saddle_planner_t *planner, const saddle_config_t *conf
     if (arrived) {
         const saddle_pose_t pose = saddle_cycle_pose(cycle, config, body);
         after_last_swing(planner, config, body, pose.com_m.y);
-        if (planner->shifting) {
-            advance_shift(planner, config, body, rest_us);
-        }
     }
+    return rest_us;
 }
 
 void saddle_planner_advance(saddle_planner_t *planner, const saddle_config_t *config,
                             const saddle_body_t *body, uint32_t dt_us)
 {
-    if (planner->shifting) {
-        advance_shift(planner, config, body, dt_us);
-    } else if (planner->mode != (uint8_t)SADDLE_MODE_STANDING) {
-        advance_cycle(planner, config, body, dt_us);
+    uint32_t rest_us = dt_us;
+    for (int i = 0; i < MODES_A_TICK && rest_us > 0u; i++) {
+        if (planner->shifting) {
+            rest_us = advance_shift(planner, config, body, rest_us);
+        } else if (planner->mode != (uint8_t)SADDLE_MODE_STANDING) {
+            rest_us = advance_cycle(planner, config, body, rest_us);
+        } else {
+            return;
+        }
     }
 }
 
@@ -466,8 +488,9 @@ static void write_standing(const saddle_planner_t *planner, const saddle_config_
     const float rate_hz = saddle_min_jerk_slope(s) / duration_s;
     const float dx_m = planner->shift_to_m.x - planner->shift_from_m.x;
     const float dy_m = planner->shift_to_m.y - planner->shift_from_m.y;
-    const saddle_vec2_t com_m = {planner->shift_from_m.x + share * dx_m,
-                                 planner->shift_from_m.y + share * dy_m};
+    const saddle_vec2_t on_the_way_m = {planner->shift_from_m.x + share * dx_m,
+                                        planner->shift_from_m.y + share * dy_m};
+    const saddle_vec2_t com_m = planner->shifting ? on_the_way_m : planner->shift_to_m;
     const float z_m = standing_height_m(planner, body, com_m);
     const float stance_m2 = com_m.x * com_m.x + com_m.y * com_m.y;
     const float leg_m = sqrtf(stance_m2 + z_m * z_m);
