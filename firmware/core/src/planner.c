@@ -11,6 +11,9 @@
 /* Feet that a walk can start from are at least this far apart across. */
 #define START_WIDTH_MIN_M 0.05f
 
+/* A stop slows to this speed at most before it brakes. */
+#define CRAWL_MAX_M_S 0.3f
+
 /* A last swing, a shift and a first step may follow each other within one long tick. */
 #define MODES_A_TICK 4
 
@@ -247,10 +250,13 @@ static bool before_landing(const saddle_cycle_t *cycle)
     return cycle->phase % 2u == 0u;
 }
 
-/* The speed to which a stop slows before it brakes; from it, every step is long enough to brake. */
-static float crawl_m_s(const saddle_config_t *config)
+/* The speed at which a stop goes on until it brakes: slow, feasible, and such that every step is
+ * long enough to brake. */
+static float crawl_m_s(const saddle_config_t *config, const saddle_body_t *body)
 {
-    return sqrtf(config->acceleration_m_s2 * config->half_step_intercept_m);
+    const float feasible_m_s = SADDLE_CEILING_MARGIN * body->speed_ceiling_m_s;
+    const float braked_m_s = sqrtf(config->acceleration_m_s2 * config->half_step_intercept_m);
+    return saddle_clamp(braked_m_s, 0.0f, saddle_clamp(feasible_m_s, 0.0f, CRAWL_MAX_M_S));
 }
 
 /* May the step after the next landing be the last, braking no harder than allowed? */
@@ -274,7 +280,8 @@ static float latest_braking_speed_m_s(const saddle_config_t *config, float way_m
     return sqrtf(in_a_tick_m_s * in_a_tick_m_s + 2.0f * rate_m_s2 * way_m) - in_a_tick_m_s;
 }
 
-static void profile_of_stop(saddle_planner_t *planner, const saddle_config_t *config)
+static void profile_of_stop(saddle_planner_t *planner, const saddle_config_t *config,
+                            const saddle_body_t *body)
 {
     saddle_cycle_t *cycle = &planner->cycle;
     saddle_speed_profile_t *profile = &cycle->profile;
@@ -282,7 +289,7 @@ static void profile_of_stop(saddle_planner_t *planner, const saddle_config_t *co
     choose_last_swing(planner, config, speed_m_s);
     const float way_m = stopping_way_m(cycle);
     const float latest_m_s = latest_braking_speed_m_s(config, way_m);
-    const float crawl = crawl_m_s(config);
+    const float crawl = crawl_m_s(config, body);
     const float slow_m_s = cycle->last_swing && latest_m_s < crawl ? latest_m_s : crawl;
     planner->braking = cycle->last_swing && (planner->braking || speed_m_s >= slow_m_s);
     if (planner->braking) {
@@ -294,7 +301,8 @@ static void profile_of_stop(saddle_planner_t *planner, const saddle_config_t *co
     }
 }
 
-static void choose_profile(saddle_planner_t *planner, const saddle_config_t *config)
+static void choose_profile(saddle_planner_t *planner, const saddle_config_t *config,
+                           const saddle_body_t *body)
 {
     saddle_cycle_t *cycle = &planner->cycle;
     const bool must_end = cycle->last_swing && !before_landing(cycle);
@@ -306,7 +314,7 @@ static void choose_profile(saddle_planner_t *planner, const saddle_config_t *con
         return;
     }
     planner->mode = (uint8_t)SADDLE_MODE_STOPPING;
-    profile_of_stop(planner, config);
+    profile_of_stop(planner, config, body);
 }
 
 /* Returns the microseconds left for what follows a last swing. */
@@ -415,7 +423,7 @@ uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_config_t 
     }
     if (!planner->shifting) {
         limits |= take_landing(planner, config, body, feet);
-        choose_profile(planner, config);
+        choose_profile(planner, config, body);
     }
     return limits;
 }

@@ -3,6 +3,9 @@
 /* Marks a context that saddle_init() has filled. */
 #define INITIALISED 0x5ADD1E00u
 
+/* The largest tick_max_s that is accepted. */
+#define TICK_LIMIT_US 250000u
+
 saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *config)
 {
     if (context == NULL) {
@@ -126,6 +129,17 @@ saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *c
     return SADDLE_OK;
 }
 
+/* Beyond a tick, tick by tick: within the range of fixed point. */
+static void advance_far(saddle_planner_t *planner, const saddle_context_t *context, uint32_t dt_us)
+{
+    uint32_t rest_us = dt_us;
+    while (rest_us > TICK_LIMIT_US) {
+        saddle_planner_advance(planner, &context->config, &context->body, TICK_LIMIT_US);
+        rest_us -= TICK_LIMIT_US;
+    }
+    saddle_planner_advance(planner, &context->config, &context->body, rest_us);
+}
+
 saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
                                saddle_plan_t *plan)
 {
@@ -144,8 +158,7 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
         return SADDLE_ERROR_TIME;
     }
     saddle_planner_t planner = context->planner;
-    saddle_planner_advance(&planner, &context->config, &context->body,
-                           (uint32_t)(time_us - context->last_time_us));
+    advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
     saddle_planner_write(&planner, &context->config, &context->body, plan);
     return SADDLE_OK;
 }
