@@ -96,12 +96,14 @@ static void pass_foot(saddle_cycle_t *cycle, const saddle_config_t *config,
 }
 
 /* The line on which the next swing foot travels, from the new stance CoP: at its place beside the
- * walking line, but between half and twice a step width from the stance foot. */
+ * walking line, but between half and twice a step width from the stance foot. A last swing lands as
+ * wide as one stands, so that the CoM stays nearer to the leg that carries it. */
 static float swing_line_y_m(const saddle_cycle_t *cycle, const saddle_config_t *config,
                             saddle_side_t foot, float speed_m_s)
 {
-    const float line_y_m = saddle_landing_y_m(config, foot, speed_m_s) - cycle->stance_y_m;
-    const float width_m = saddle_step_width_m(config, speed_m_s);
+    const float then_m_s = cycle->last_swing ? 0.0f : speed_m_s;
+    const float line_y_m = saddle_landing_y_m(config, foot, then_m_s) - cycle->stance_y_m;
+    const float width_m = saddle_step_width_m(config, then_m_s);
     const float outward = foot == SADDLE_LEFT ? 1.0f : -1.0f;
     return outward * saddle_clamp(outward * line_y_m, 0.5f * width_m, 2.0f * width_m);
 }
