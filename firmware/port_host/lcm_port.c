@@ -84,6 +84,7 @@ static saddlewalk_plan_t plan_message(const saddle_plan_t *plan, int64_t utime_u
     saddlewalk_plan_t message = {
         .utime_us = utime_us,
         .valid = plan->valid,
+        .mode = (int8_t)plan->mode,
         .phase = (int8_t)plan->phase,
         .support = (int8_t)plan->support,
         .step_count = (int32_t)plan->step_count,
@@ -93,10 +94,14 @@ static saddlewalk_plan_t plan_message(const saddle_plan_t *plan, int64_t utime_u
         .speed_m_s = plan->speed_m_s,
         .step_length_m = plan->step_length_m,
         .step_width_m = plan->step_width_m,
+        .foot_pitch_rad = {plan->foot_pitch_rad[SADDLE_LEFT], plan->foot_pitch_rad[SADDLE_RIGHT]},
         .leg_length_m = plan->leg_length_m,
+        .knee_flexion_m = plan->knee_flexion_m,
         .toe_off_rad = plan->toe_off_rad,
         .heel_strike_rad = plan->heel_strike_rad,
+        .time_to_via_point_s = plan->time_to_via_point_s,
         .time_to_heel_strike_s = plan->time_to_heel_strike_s,
+        .time_to_toe_off_s = plan->time_to_toe_off_s,
     };
     set3(message.com_m, plan->com_m);
     set3(message.com_velocity_m_s, plan->com_velocity_m_s);

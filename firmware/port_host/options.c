@@ -68,9 +68,18 @@ static bool set_clock(saddle_options_t *options, const char *text)
 
 static bool set_ankle(saddle_options_t *options, const char *text)
 {
-    const bool rigid = strcmp(text, "rigid") == 0;
-    options->config.ankle = rigid ? SADDLE_ANKLE_RIGID : SADDLE_ANKLE_ERF;
-    return rigid || strcmp(text, "erf") == 0 || complain("ankle", text, "erf or rigid");
+    static const char *const names[SADDLE_ANKLE_COUNT] = {
+        [SADDLE_ANKLE_ERF] = "erf",
+        [SADDLE_ANKLE_RIGID] = "rigid",
+        [SADDLE_ANKLE_CYCLOID] = "cycloid",
+    };
+    for (int i = 0; i < SADDLE_ANKLE_COUNT; ++i) {
+        if (strcmp(names[i], text) == 0) {
+            options->config.ankle = (saddle_ankle_t)i;
+            return true;
+        }
+    }
+    return complain("ankle", text, "erf, rigid or cycloid");
 }
 
 static void print_help(const saddle_config_t *config)
@@ -80,7 +89,7 @@ static void print_help(const saddle_config_t *config)
          "  --can SPEC         auto (default), socketcan:INTERFACE, udp, udp:GROUP:PORT\n"
          "  --lcm URL          default " DEFAULT_LCM "; none: without LCM\n"
          "  --clock CLOCK      realtime (default); lockstep: one tick per set of measurements\n"
-         "  --ankle ANKLE      ankle strategy, erf (default) or rigid\n"
+         "  --ankle ANKLE      ankle strategy: erf (default), rigid, cycloid\n"
          "  --set NAME=VALUE   a parameter of the person or the device, as often as needed\n"
          "  --help             this text\n\n"
          "parameter                   default     from       to");

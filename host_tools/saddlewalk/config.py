@@ -11,7 +11,7 @@ from saddlewalk.errors import UserError
 
 DEFAULT_HEIGHT_M = 1.79
 DEFAULT_MASS_KG = 63.3
-ANKLES = {"erf": 0, "rigid": 1}
+ANKLES = {"erf": 0, "rigid": 1, "cycloid": 2}
 
 
 def add_body_options(parser: argparse.ArgumentParser) -> None:

@@ -10,6 +10,7 @@ from saddlewalk.errors import UserError
 from saddlewalk.paths import built
 
 AGE_NEVER_US = 0xFFFFFFFF
+TIME_MAX_S = 1000.0  # SADDLE_TIME_MAX_S: an event of a plan that is not foreseen
 
 
 @functools.cache
@@ -56,21 +57,30 @@ class Core:
             raise UserError(describe_bad_field(ffi().string(bad_field).decode(), config))
         library().saddle_init(self._context, config)
 
+    def join(self, command: Command) -> None:
+        """saddle_join(): as if a steady walk were under way, at the left foot via point."""
+        self._command(self._input.command, command)
+        status = library().saddle_join(self._context, ffi().addressof(self._input, "command"))
+        if status != library().SADDLE_OK:
+            raise ValueError(f"saddle_join at {command.speed_m_s} m/s: status {status}")
+
     def tick(self, time_us: int, command: Command, measurement: Measurement) -> Any:
         """One saddle_tick(): a saddle_output_t of its own. Raises ValueError on a refused call."""
         output = ffi().new("saddle_output_t *")
         self._input.time_us = time_us
-        walk = command.speed_m_s is not None
-        self._input.command.mode = (
-            library().SADDLE_COMMAND_WALK if walk else library().SADDLE_COMMAND_STAND
-        )
-        self._input.command.speed_m_s = command.speed_m_s if walk else 0.0
-        self._input.command.heel_strike_rad = command.heel_strike_rad
+        self._command(self._input.command, command)
         _fill(self._input.measurement, measurement)
         status = library().saddle_tick(self._context, self._input, output)
         if status != library().SADDLE_OK:
             raise ValueError(f"saddle_tick at {time_us} us: status {status}")
         return output
+
+    @staticmethod
+    def _command(target: Any, command: Command) -> None:
+        walk = command.speed_m_s is not None
+        target.mode = library().SADDLE_COMMAND_WALK if walk else library().SADDLE_COMMAND_STAND
+        target.speed_m_s = command.speed_m_s if walk else 0.0
+        target.heel_strike_rad = command.heel_strike_rad
 
 
 def _fill(target: Any, measurement: Measurement) -> None:

@@ -12,11 +12,21 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
+from saddlewalk.core import TIME_MAX_S
+
 SILENT_AFTER_S = 1.0
 
-# Bit 0 first, as saddle_status_t, saddle_limit_t and saddle_fault_t.
-STATUSES = ("OK", "ERROR_NULL", "ERROR_CONFIG", "ERROR_UNINITIALISED", "ERROR_TIME")
-LIMITS = ("SPEED", "HEEL_STRIKE", "TOE_OFF", "COMMAND_HELD", "TICK_GAP")
+# By number, as saddle_status_t and saddle_mode_t; bit 0 first, as saddle_limit_t, saddle_fault_t.
+STATUSES = (
+    "OK",
+    "ERROR_NULL",
+    "ERROR_CONFIG",
+    "ERROR_UNINITIALISED",
+    "ERROR_TIME",
+    "ERROR_COMMAND",
+)
+MODES = ("standing", "starting", "walking", "stopping")
+LIMITS = ("SPEED", "HEEL_STRIKE", "TOE_OFF", "FEET", "TICK_GAP")
 FAULTS = (
     "COMMAND",
     "COM_STALE",
@@ -65,14 +75,21 @@ def gait(plan) -> str:
     if plan is None:
         return "plan: none yet"
     if not plan.valid:
-        return "plan: stand"
+        return "plan: none"
+    mode = MODES[plan.mode] if 0 <= plan.mode < len(MODES) else f"mode {plan.mode}"
+    if plan.mode == plan.MODE_STANDING:
+        return f"plan: {mode} after {plan.step_count} steps"
     support = "left" if plan.support == plan.LEFT else "right"
     turn = plan.theta_rad / (2 * math.pi)
     return (
-        f"plan: step {plan.step_count}, phase {plan.phase} ({turn:4.0%} of the stride), "
-        f"support {support}, {plan.speed_m_s:.2f} m/s, "
-        f"heel strike in {plan.time_to_heel_strike_s:.2f} s"
+        f"plan: {mode}, step {plan.step_count}, phase {plan.phase} ({turn:4.0%} of the stride), "
+        f"support {support}, {plan.speed_m_s:.2f} m/s, {_heel_strike(plan)}"
     )
+
+
+def _heel_strike(plan) -> str:
+    foreseen = plan.time_to_heel_strike_s < TIME_MAX_S
+    return f"heel strike in {plan.time_to_heel_strike_s:.2f} s" if foreseen else "no heel strike"
 
 
 def condition(health) -> str:

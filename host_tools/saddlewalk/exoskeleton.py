@@ -63,7 +63,7 @@ def plan_of(messages: Messages) -> Plan | None:
         foot_heights_m=(left["Z"], right["Z"]),
         swing_velocity_m_s=swing["VX"],
         swing_rise_m_s=swing["VZ"],
-        time_to_heel_strike_s=swing["TIME_TO_HEEL_STRIKE"],
+        time_to_heel_strike_s=messages["PLAN_EVENTS"]["TIME_TO_HEEL_STRIKE"],
         landing_m=complex(landing["X"], landing["Y"]),
         leg_length_m=landing["LEG_LENGTH"],
     )

@@ -41,15 +41,20 @@ speed = number_in(1e-3, 10, "m/s")
 def add_gait_options(
     parser: argparse.ArgumentParser, default_speed_m_s: float | None = None
 ) -> None:
-    """--speed, required unless it has a default, and --hs-angle: what is asked of the planner."""
+    """--speed or --schedule, one required unless the speed has a default, and --hs-angle."""
     default = "" if default_speed_m_s is None else f" (default {default_speed_m_s:g})"
-    parser.add_argument(
+    pace = parser.add_mutually_exclusive_group(required=default_speed_m_s is None)
+    pace.add_argument(
         "--speed",
         type=speed,
         default=default_speed_m_s,
-        required=default_speed_m_s is None,
         metavar="M/S",
         help="walking speed" + default,
+    )
+    pace.add_argument(
+        "--schedule",
+        metavar="FILE",
+        help="CSV with the columns t_s (from 0, increasing) and speed_m_s (0: stand)",
     )
     parser.add_argument(
         "--hs-angle",

@@ -19,7 +19,10 @@ from saddlewalk.wire import Receiver, Sender, frame_crc
 WAIT_S = 2.0  # for what must come
 SILENCE_S = 0.1  # for what must not
 TICK_S = 0.08
-MESSAGES_PER_TICK = 12
+MESSAGES_PER_TICK = 14
+STANDING_MODE, STARTING, WALKING = 0, 1, 2
+# A walk that comes to its speed within half a second.
+QUICK = ("--set=shift_time_s=0.1", "--set=acceleration_m_s2=5")
 
 WALK = {"MODE": 1, "SPEED": 1.2, "HEEL_STRIKE": 0.1745}
 STANDING = {
@@ -97,23 +100,25 @@ def lockstep(*options: str) -> Host:
 
 
 def test_lockstep_answers_each_set_with_one_tick():
-    with lockstep() as host:
+    with lockstep(*QUICK) as host:
         assert host.spec.removeprefix("udp:") in host.first_line
         host.send("COMMAND", **WALK)
-        for number in range(40):
+        for number in range(60):
             host.measure()
             tick = host.tick()
             assert len(tick) == MESSAGES_PER_TICK
             assert {message["COUNTER"] for message in tick.values()} == {number % 16}
             assert tick["PLAN_STEP"]["VALID"] == 1
-            assert tick["PLAN_ANKLE"]["SPEED"] == pytest.approx(1.2, abs=1e-4)
-            assert tick["SCORES_STEP"]["S_SW"] == pytest.approx(1.0, abs=1e-3)
+            assert tick["PLAN_EVENTS"]["MODE"] in (STARTING, WALKING)
             assert tick["SCORES_MARGIN"]["MOS_COM"] > 0
-            assert tick["SCORES_FORCE"]["FAULTS"] == 0
             assert tick["HEALTH"]["STATUS"] == tick["HEALTH"]["REJECTED_FRAMES"] == 0
+        assert tick["PLAN_EVENTS"]["MODE"] == WALKING
+        assert tick["PLAN_ANKLE"]["SPEED"] == pytest.approx(1.2, abs=1e-4)
         assert tick["PLAN_STEP"]["STEP_COUNT"] >= 4
+        assert tick["SCORES_STEP"]["S_SW"] == pytest.approx(1.0, abs=1e-3)
+        assert tick["SCORES_FORCE"]["FAULTS"] == 0
         assert host.tick_frames(SILENCE_S) == []
-        assert host.stop().startswith("40 ticks, 0 late; frames: 121 accepted")
+        assert host.stop().startswith("60 ticks, 0 late; frames: 181 accepted")
 
 
 def test_frames_of_two_instants_are_no_set():
@@ -187,7 +192,7 @@ def test_bad_frames_are_counted_and_not_used():
         host.measure()
         after = host.tick()
         assert after["HEALTH"]["REJECTED_FRAMES"] == 7
-        assert after["PLAN_STEP"]["VALID"] == 0
+        assert after["PLAN_EVENTS"]["MODE"] == STANDING_MODE
         assert after["SCORES_MARGIN"] == before["SCORES_MARGIN"] | {"COUNTER": 1}
         assert "rejected 1 bad CRC, 1 bad counter, 1 bad version, 4 malformed" in host.stop()
 
@@ -224,21 +229,35 @@ def test_an_unusable_command_is_counted_and_the_last_one_holds():
             host.measure()
             tick = host.tick()
             assert tick["HEALTH"]["REJECTED_FRAMES"] == rejected
-            assert tick["PLAN_ANKLE"]["SPEED"] == pytest.approx(1.2, abs=1e-4)
+            assert tick["PLAN_EVENTS"]["MODE"] == STARTING
         assert "commands rejected 2;" in host.stop()
 
 
 def test_parameters_reach_the_core():
-    with lockstep("--set", "step_width_fast_m=0.2", "--ankle=rigid") as host:
-        host.send("COMMAND", **WALK)
+    with lockstep("--set", "step_width_slow_m=0.2") as host:
         host.measure()
         tick = host.tick()
         assert tick["PLAN_LEFT"]["Y"] == pytest.approx(0.1, abs=1e-4)
-        assert tick["PLAN_ANKLE"]["HEEL_STRIKE"] == 0
+
+
+@pytest.mark.parametrize(
+    ("ankle", "turns", "bends"),
+    [("erf", True, False), ("rigid", False, False), ("cycloid", True, True)],
+)
+def test_ankle_models_are_told_apart(ankle, turns, bends):
+    with lockstep("--ankle", ankle, *QUICK) as host:
+        host.send("COMMAND", **WALK)
+        pitches, knees = [], []
+        for _ in range(40):
+            host.measure()
+            pitch = host.tick()["PLAN_PITCH"]
+            pitches += [pitch["LEFT"], pitch["RIGHT"]]
+            knees.append(pitch["KNEE_FLEXION"])
+        assert (max(pitches) > 0.1, max(knees) > 5e-4) == (turns, bends)
 
 
 def test_realtime_ticks_every_80_ms_without_any_measurement():
-    with Host("--lcm", "none") as host:
+    with Host("--lcm", "none", *QUICK) as host:
         host.send("COMMAND", **WALK)
         host.tick()
         times_s = []
@@ -320,6 +339,10 @@ def test_lcm_says_what_can_says():
         scores, bos = on_lcm["SADDLEWALK_SCORES"], on_lcm["SADDLEWALK_BOS"]
         half_step = 0.5e-4  # half a step of the CAN signals
         assert plan.com_m[1] == pytest.approx(on_can["PLAN_COM"]["Y"], abs=1.01 * half_step)
+        assert plan.mode == on_can["PLAN_EVENTS"]["MODE"] == plan.MODE_STARTING
+        assert plan.time_to_via_point_s == pytest.approx(
+            on_can["PLAN_EVENTS"]["TIME_TO_VIA_POINT"], abs=5.01e-4
+        )
         assert plan.theta_rad == pytest.approx(on_can["PLAN_STEP"]["THETA"], abs=2.01 * half_step)
         assert scores.mos_com_m == pytest.approx(
             on_can["SCORES_MARGIN"]["MOS_COM"], abs=1.01 * half_step
@@ -333,39 +356,40 @@ def test_lcm_says_what_can_says():
 
 def test_commands_by_lcm_and_the_newest_wins():
     url = own_lcm()
-    with Host("--lcm", url) as host:
+    with Host("--lcm", url, *QUICK) as host:
         node = LcmNode(url)
         node.command(1, 0.8)
-        assert speed_after(node) == pytest.approx(0.8)
+        assert speed_after(node, 0.8) == pytest.approx(0.8)
         host.send("COMMAND", MODE=0, SPEED=0.0, HEEL_STRIKE=0.0)
-        assert speed_after(node) == 0
+        assert speed_after(node, 0.0) == 0
         host.send("COMMAND", **WALK)
-        assert speed_after(node) == pytest.approx(1.2, abs=1e-4)
+        assert speed_after(node, 1.2) == pytest.approx(1.2, abs=1e-4)
         node.command(0, 0.0)
-        assert speed_after(node) == 0
+        assert speed_after(node, 0.0) == 0
 
 
-def speed_after(node: LcmNode) -> float:
-    """Planned speed, once a tick has surely seen what was sent before."""
-    node.take()
-    node.take()
-    return node.take()["SADDLEWALK_PLAN"].speed_m_s
+def speed_after(node: LcmNode, expected_m_s: float) -> float:
+    """Planned speed once it is the expected one, or after more time than it takes to get there."""
+    plans = (node.take()["SADDLEWALK_PLAN"] for _ in range(40))
+    return next((p.speed_m_s for p in plans if abs(p.speed_m_s - expected_m_s) < 1e-4), math.nan)
 
 
 def test_bad_lcm_commands_are_counted_and_not_used():
     url = own_lcm()
-    with Host("--lcm", url) as host:
+    with Host("--lcm", url, *QUICK) as host:
         node = LcmNode(url)
         node.command(1, 0.8)
         node.command(-1, 1.0)
         node.command(1, math.nan)
-        assert speed_after(node) == pytest.approx(0.8)
-        node.command(1, 0.8)
+        assert speed_after(node, 0.8) == pytest.approx(0.8)
         sender = open_lcm(url)
         for junk in (b"", b"junk", bytes(17), bytes(1000)):
             sender.publish("SADDLEWALK_COMMAND", junk)
-        assert speed_after(node) == pytest.approx(0.8)
-        assert node.take()["SADDLEWALK_HEALTH"].commands_rejected == 6
+        node.take()
+        node.take()
+        on_lcm = node.take()
+        assert on_lcm["SADDLEWALK_PLAN"].speed_m_s == pytest.approx(0.8)
+        assert on_lcm["SADDLEWALK_HEALTH"].commands_rejected == 6
         assert "commands rejected 6;" in host.stop()
 
 
@@ -382,7 +406,7 @@ def test_bad_lcm_commands_are_counted_and_not_used():
         (["--set", "body_mass_kg=nan"], "--set body_mass_kg=nan: give a number from 5 to 300"),
         (["--set", "body_mass_kg=70kg"], "--set body_mass_kg=70kg: give a number from 5 to"),
         (["--set", "step_width_slow_speed_m_s=2"], "--set step_width_slow_speed_m_s=2: "),
-        (["--ankle", "cycloid"], "--ankle cycloid: give erf or rigid"),
+        (["--ankle", "wooden"], "--ankle wooden: give erf, rigid or cycloid"),
         (["--colour"], "--colour: give an option that --help lists"),
         (["--can"], "--can: give a value"),
         (["now"], "now: give options only"),

@@ -14,7 +14,7 @@ import lcm
 import pytest
 from rich.console import Console
 
-from saddlewalk import dashboard, paths
+from saddlewalk import core, dashboard, paths
 from saddlewalk.commands.monitor import CHANNELS, Listener
 from saddlewalk.lcm_types import health_t, plan_t, scores_t
 
@@ -30,6 +30,7 @@ SILENT = "memq://"
 def plan() -> plan_t:
     message = plan_t()
     message.valid = 1
+    message.mode = plan_t.MODE_WALKING
     message.phase, message.support, message.step_count = 2, plan_t.RIGHT, 17
     message.theta_rad = 1.2 * math.pi
     message.speed_m_s = 1.2
@@ -58,7 +59,8 @@ def drawn(*view, **kwargs) -> str:
 
 
 SHOWN = ["phase 2", "60% of the stride", "right", "1.20 m/s", "0.31 s", "0.62", "1.25", "n/a"]
-SHOWN += ["+0.083 m", "-0.214 m", "data age 4 ms", "late ticks 3", "frames rejected 7", "tick 512"]
+SHOWN += ["+0.083 m", "-0.214 m", "data age 4 ms", "late ticks 3", "frames rejected 7"]
+SHOWN += ["plan: walking", "tick 512"]
 
 
 @pytest.mark.parametrize("text", SHOWN)
@@ -94,8 +96,20 @@ def test_a_channel_that_is_silent_hides_no_other(missing):
     assert ("tick 512" in text) == (missing != 2)
 
 
-def test_standing_is_said_and_no_numbers_of_a_plan():
-    assert dashboard.gait(plan_t()) == "plan: stand"
+def test_a_failed_tick_is_said_and_no_numbers_of_a_plan():
+    assert dashboard.gait(plan_t()) == "plan: none"
+
+
+def test_standing_is_said_without_the_numbers_of_a_step():
+    message = plan()
+    message.mode = plan_t.MODE_STANDING
+    assert dashboard.gait(message) == "plan: standing after 17 steps"
+
+
+def test_a_heel_strike_that_is_not_foreseen_has_no_time():
+    message = plan()
+    message.mode, message.time_to_heel_strike_s = plan_t.MODE_STARTING, 1000.0
+    assert dashboard.gait(message).endswith("no heel strike")
 
 
 def test_faults_limits_and_status_are_named():
@@ -103,7 +117,7 @@ def test_faults_limits_and_status_are_named():
     message.measurement_age_us = -1
     message.status, message.limits, message.faults = 2, 0b1001, 0b110
     text = dashboard.condition(message)
-    for name in ("ERROR_CONFIG", "limits SPEED COMMAND_HELD", "faults COM_STALE COM_RANGE"):
+    for name in ("ERROR_CONFIG", "limits SPEED FEET", "faults COM_STALE COM_RANGE"):
         assert name in text
     assert "never measured" in text
     message.status, message.limits = 99, -1
@@ -111,17 +125,23 @@ def test_faults_limits_and_status_are_named():
 
 
 @pytest.mark.parametrize(
-    ("header", "kind", "names"),
+    ("header", "numbered", "names"),
     [
-        ("saddlewalk.h", "", dashboard.STATUSES[1:]),
-        ("planner.h", "LIMIT_", dashboard.LIMITS),
-        ("supervisor.h", "FAULT_", dashboard.FAULTS),
+        ("saddlewalk.h", r"SADDLE_(ERROR_\w+) = \d", dashboard.STATUSES[1:]),
+        ("planner.h", r"SADDLE_MODE_(\w+) = \d", tuple(map(str.upper, dashboard.MODES))),
+        ("planner.h", r"SADDLE_LIMIT_(\w+) = 1u << \d", dashboard.LIMITS),
+        ("supervisor.h", r"SADDLE_FAULT_(\w+) = 1u << \d", dashboard.FAULTS),
     ],
 )
-def test_names_are_those_of_the_core(header, kind, names):
+def test_names_are_those_of_the_core(header, numbered, names):
     text = (paths.CHECKOUT / "firmware/core/include/saddlewalk" / header).read_text()
-    numbered = r"SADDLE_(ERROR_\w+) = \d" if not kind else rf"SADDLE_{kind}(\w+) = 1u << \d"
     assert re.findall(numbered, text) == list(names)
+
+
+def test_the_longest_time_is_that_of_the_core():
+    header = paths.CHECKOUT / "firmware/core/include/saddlewalk/speed_profile.h"
+    (defined,) = re.findall(r"#define SADDLE_TIME_MAX_S (\S+)f", header.read_text())
+    assert float(defined) == core.TIME_MAX_S
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
         "PLAN_COM_VELOCITY": {"VX": 1.2, "VY": 0.0, "VZ": 0.0},
         "PLAN_LEFT": {"X": 0.0, "Y": 0.05, "Z": 0.0},
         "PLAN_RIGHT": {"X": 0.0, "Y": -0.05, "Z": 0.05},
-        "PLAN_SWING": {"VX": 2.4, "VZ": 0.0, "TIME_TO_HEEL_STRIKE": 0.3},
+        "PLAN_SWING": {"VX": 2.4, "VY": 0.0, "VZ": 0.0},
         "PLAN_LANDING": {"X": 0.7, "Y": -0.05, "LEG_LENGTH": 1.02},
         "PLAN_ANKLE": {"TOE_OFF": 0.0, "HEEL_STRIKE": 0.0, "SPEED": 1.2},
         "PLAN_STEP": {
@@ -29,6 +29,13 @@ def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
             "STEP_LENGTH": 0.7,
             "STEP_COUNT": 7,
         },
+        "PLAN_EVENTS": {
+            "MODE": 2,
+            "TIME_TO_VIA_POINT": 0.3,
+            "TIME_TO_HEEL_STRIKE": 0.3,
+            "TIME_TO_TOE_OFF": 0.3,
+        },
+        "PLAN_PITCH": {"LEFT": 0.0, "RIGHT": 0.0, "KNEE_FLEXION": 0.0},
         "SCORES_STEP": {"S_PEND": 1.0, "S_JUMP": 1.0, "S_SW": 1.0},
         "SCORES_MARGIN": {"MOS_COM": 0.1, "MOS_XCOM": 0.1, "V_COMP": 1.2},
         "SCORES_FORCE": {"GRAVITY_X": 0.0, "GRAVITY_Y": 0.0, "FAULTS": 0},
@@ -37,11 +44,11 @@ def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
     return [sender.frame(name, **signals) for name, signals in values.items()]
 
 
-@pytest.mark.parametrize("lost", range(12))
+@pytest.mark.parametrize("lost", range(14))
 def test_a_tick_with_a_lost_frame_is_not_used(lost):
     sender, reader = Sender(), TickReader()
     first, second, third = (tick_frames(sender) for _ in range(3))
-    assert [reader.feed(frame) is not None for frame in first] == [False] * 11 + [True]
+    assert [reader.feed(frame) is not None for frame in first] == [False] * 13 + [True]
     assert not any(reader.feed(frame) for frame in second[:lost] + second[lost + 1 :])
     heard = [reader.feed(frame) for frame in third]
     assert plan_of(heard[-1]).step_count == 7 and not any(heard[:-1])
@@ -81,6 +88,6 @@ def test_a_tick_that_waits_is_taken_even_when_time_is_up():
             return next(frames, None)
 
     bus, reader = Waiting(), TickReader()
-    assert [next_tick(bus, reader.feed, -1.0) is not None for _ in range(12)] == [False] * 11 + [
+    assert [next_tick(bus, reader.feed, -1.0) is not None for _ in range(14)] == [False] * 13 + [
         True
     ]

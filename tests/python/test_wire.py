@@ -13,7 +13,7 @@ from cffi import FFI
 from saddlewalk import paths, wire
 
 SEED = 20261122
-OUTPUTS = 1000  # of 12 frames
+OUTPUTS = 1000  # of 14 frames
 INPUTS = 3000  # of 4 frames
 
 NUMBERS = {
@@ -27,8 +27,8 @@ NUMBERS = {
     "PLAN_RIGHT": {"X": "plan.foot_m.1.x", "Y": "plan.foot_m.1.y", "Z": "plan.foot_m.1.z"},
     "PLAN_SWING": {
         "VX": "plan.swing_velocity_m_s.x",
+        "VY": "plan.swing_velocity_m_s.y",
         "VZ": "plan.swing_velocity_m_s.z",
-        "TIME_TO_HEEL_STRIKE": "plan.time_to_heel_strike_s",
     },
     "PLAN_LANDING": {
         "X": "plan.landing_m.x",
@@ -41,6 +41,16 @@ NUMBERS = {
         "SPEED": "plan.speed_m_s",
     },
     "PLAN_STEP": {"THETA": "plan.theta_rad", "STEP_LENGTH": "plan.step_length_m"},
+    "PLAN_EVENTS": {
+        "TIME_TO_VIA_POINT": "plan.time_to_via_point_s",
+        "TIME_TO_HEEL_STRIKE": "plan.time_to_heel_strike_s",
+        "TIME_TO_TOE_OFF": "plan.time_to_toe_off_s",
+    },
+    "PLAN_PITCH": {
+        "LEFT": "plan.foot_pitch_rad.0",
+        "RIGHT": "plan.foot_pitch_rad.1",
+        "KNEE_FLEXION": "plan.knee_flexion_m",
+    },
     "SCORES_STEP": {"S_PEND": "scores.s_pend", "S_JUMP": "scores.s_jump", "S_SW": "scores.s_sw"},
     "SCORES_MARGIN": {
         "MOS_COM": "scores.mos_com_m",
@@ -87,7 +97,11 @@ def step(struct, name: str):
 
 def put(struct, path: str, value: float) -> None:
     *parents, last = path.split(".")
-    setattr(functools.reduce(step, parents, struct), last, value)
+    parent = functools.reduce(step, parents, struct)
+    if last.isdigit():
+        parent[int(last)] = value
+    else:
+        setattr(parent, last, value)
 
 
 def get(struct, path: str) -> float:
@@ -143,7 +157,7 @@ def random_output(codec, rng: random.Random):
     output.scores.valid = rng.randrange(64)
     plan = output.plan
     plan.valid = rng.random() < 0.8
-    plan.phase, plan.support = rng.randrange(4), rng.randrange(2)
+    plan.mode, plan.phase, plan.support = rng.randrange(4), rng.randrange(4), rng.randrange(2)
     plan.step_count = rng.randrange(2**32)
     said = {}
     for message, signals in NUMBERS.items():
@@ -156,6 +170,7 @@ def random_output(codec, rng: random.Random):
             said[message][signal] = value if valid else math.nan
     said["PLAN_STEP"] |= {"VALID": plan.valid, "SUPPORT": plan.support, "PHASE": plan.phase}
     said["PLAN_STEP"]["STEP_COUNT"] = plan.step_count % 65536
+    said["PLAN_EVENTS"]["MODE"] = plan.mode
     said["SCORES_FORCE"]["FAULTS"] = output.faults
     said["HEALTH"] = {"STATUS": output.status, "LIMITS": output.limits}
     return output, said

@@ -16,10 +16,16 @@ void setUp(void)
 
 void tearDown(void) {}
 
+static saddle_quarter_t quarter_at(float speed)
+{
+    const float length = (float)(0.1802 * (double)speed + 0.1351);
+    return saddle_quarter(&config, SADDLE_LEFT, length, saddle_step_width_m(&config, speed), speed);
+}
+
 static saddle_transition_t transition_at(float speed, double heel_strike_deg)
 {
-    const saddle_gait_t gait = saddle_gait(&config, speed);
-    return saddle_transition(&config, &body, &gait, (float)(heel_strike_deg * DEGREE));
+    const saddle_quarter_t quarter = quarter_at(speed);
+    return saddle_transition(&config, &body, &quarter, speed, (float)(heel_strike_deg * DEGREE));
 }
 
 static void test_toe_off_angles_of_the_paper_s_speeds(void)
@@ -72,7 +78,7 @@ static void test_profiles_are_the_equations_and_rates_their_derivatives(void)
     for (int i = -600; i < 600; i++) {
         const float t = 0.001f * (float)i;
         const bool before = t < 0.0f;
-        const saddle_ankle_state_t ankle = saddle_ankle(&config, &body, &transition, t);
+        const saddle_ankle_state_t ankle = saddle_ankle(&config, &body, &transition, t, t < 0.0f);
         const double rise = erf(((double)t + (double)transition.heel_strike_lead_s) / 0.11);
         const double toe_off = (double)transition.toe_off_rad * (1.0 + rise);
         const double heel_strike = 10.0 * DEGREE * (1.0 - rise);
@@ -90,8 +96,8 @@ static void test_profiles_are_the_equations_and_rates_their_derivatives(void)
 static void test_far_from_the_transition_the_leg_has_its_length(void)
 {
     const saddle_transition_t transition = transition_at(0.01f, 10.0);
-    const saddle_ankle_state_t before = saddle_ankle(&config, &body, &transition, -100.0f);
-    const saddle_ankle_state_t after = saddle_ankle(&config, &body, &transition, 100.0f);
+    const saddle_ankle_state_t before = saddle_ankle(&config, &body, &transition, -100.0f, true);
+    const saddle_ankle_state_t after = saddle_ankle(&config, &body, &transition, 100.0f, false);
     ASSERT_SAME_FLOAT(body.pendulum_m, before.leg_length_m);
     ASSERT_SAME_FLOAT(body.pendulum_m, after.leg_length_m);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, before.leg_rate_m_s);
@@ -103,7 +109,7 @@ static void test_rigid_leg_keeps_its_length(void)
     config.ankle = SADDLE_ANKLE_RIGID;
     const saddle_transition_t transition = transition_at(1.2f, 10.0);
     for (float t = -0.5f; t < 0.5f; t += 0.01f) {
-        const saddle_ankle_state_t ankle = saddle_ankle(&config, &body, &transition, t);
+        const saddle_ankle_state_t ankle = saddle_ankle(&config, &body, &transition, t, t < 0.0f);
         ASSERT_SAME_FLOAT(body.pendulum_m, ankle.leg_length_m);
         ASSERT_SAME_FLOAT(0.0f, ankle.leg_rate_m_s);
         ASSERT_SAME_FLOAT(0.0f, ankle.toe_off_rad);
@@ -124,6 +130,57 @@ static void test_height_closes_the_triangle_and_its_rate_is_the_derivative(void)
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, (1.04 * 0.3 - 0.3 * 1.2 - 0.05 * 0.1) / z, rate);
 }
 
+static void test_cycloid_has_the_human_amplitude_and_its_slope(void)
+{
+    for (float speed = 0.05f; speed < 1.93f; speed += 0.05f) {
+        const saddle_quarter_t quarter = quarter_at(speed);
+        const double offset = 0.5 * (double)quarter.width_m - (double)quarter.amplitude_m;
+        const double via_point = sqrt(pow(0.57 * 1.79, 2) - offset * offset);
+        const double excursion = 0.02656 * (double)speed + 0.002575;
+        for (int k = -20; k <= 20; k++) {
+            const double angle = 0.025 * PI * k;
+            const saddle_sample_t height = saddle_cycloid(&body, &quarter, (float)angle);
+            const double z = via_point - 0.5 * excursion * (1.0 - cos(2.0 * angle));
+            const double slope =
+                -excursion * sin(2.0 * angle) * 0.5 * PI / (double)quarter.length_m;
+            TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, z, height.value);
+            TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, slope, height.slope);
+        }
+    }
+}
+
+static void test_ankle_angle_gives_the_leg_its_length(void)
+{
+    for (int k = 0; k <= 200; k++) {
+        const float leg = body.pendulum_m + 0.001f * (float)k;
+        bool limited = true;
+        const saddle_ankle_state_t off = saddle_ankle_for_leg(&config, &body, leg, true, &limited);
+        const double chord = 2.0 * 0.1 * sin(0.5 * (double)off.toe_off_rad);
+        TEST_ASSERT_DOUBLE_WITHIN(2 * FLOAT_TOLERANCE, (double)leg - (double)body.pendulum_m, chord);
+        ASSERT_SAME_FLOAT(0.0f, off.heel_strike_rad);
+        ASSERT_SAME_FLOAT(0.0f, off.knee_flexion_m);
+        TEST_ASSERT_EQUAL(k == 200 && limited, limited); /* the end itself is a rounding away */
+        const saddle_ankle_state_t heel = saddle_ankle_for_leg(&config, &body, leg, false, &limited);
+        ASSERT_SAME_FLOAT(off.toe_off_rad, heel.heel_strike_rad);
+        ASSERT_SAME_FLOAT(0.0f, heel.toe_off_rad);
+        ASSERT_SAME_FLOAT(leg, heel.leg_length_m);
+    }
+}
+
+static void test_leg_out_of_the_ankle_s_range_flexes_the_knee_or_is_said(void)
+{
+    bool limited = true;
+    const saddle_ankle_state_t bent =
+        saddle_ankle_for_leg(&config, &body, body.pendulum_m - 0.003f, true, &limited);
+    TEST_ASSERT_FALSE(limited);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.003, bent.knee_flexion_m);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, bent.toe_off_rad);
+    const saddle_ankle_state_t far =
+        saddle_ankle_for_leg(&config, &body, body.pendulum_m + 0.201f, false, &limited);
+    TEST_ASSERT_TRUE(limited);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, PI, far.heel_strike_rad);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -134,5 +191,8 @@ int main(void)
     RUN_TEST(test_far_from_the_transition_the_leg_has_its_length);
     RUN_TEST(test_rigid_leg_keeps_its_length);
     RUN_TEST(test_height_closes_the_triangle_and_its_rate_is_the_derivative);
+    RUN_TEST(test_cycloid_has_the_human_amplitude_and_its_slope);
+    RUN_TEST(test_ankle_angle_gives_the_leg_its_length);
+    RUN_TEST(test_leg_out_of_the_ankle_s_range_flexes_the_knee_or_is_said);
     return UNITY_END();
 }

@@ -11,26 +11,30 @@ void tearDown(void) {}
 
 static const float SPEEDS[] = {0.01f, 0.3f, 0.7f, 1.0f, 1.2f, 1.6f, 1.9f};
 
+static saddle_quarter_t quarter_at(float speed, saddle_side_t stance)
+{
+    const float length = (float)(0.1802 * (double)speed + 0.1351);
+    return saddle_quarter(&config, stance, length, saddle_step_width_m(&config, speed), speed);
+}
+
 static void test_path_is_the_equation_s(void)
 {
     for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
-        const saddle_gait_t gait = saddle_gait(&config, SPEEDS[i]);
-        const double step_time = (double)gait.step_length_m / (double)gait.speed_m_s;
-        for (int k = -100; k <= 100; k++) {
-            const double t = 0.005 * k * step_time; /* from the foot via point */
-            const float phase = (float)(PI * t / step_time);
-            for (int side = SADDLE_LEFT; side <= SADDLE_RIGHT; side++) {
-                const double sign = side == SADDLE_LEFT ? 1.0 : -1.0;
-                const double rate = PI / step_time;
-                const double amplitude = sign * (double)gait.lateral_amplitude_m;
-                const saddle_com_path_t path = saddle_com_path(&gait, (saddle_side_t)side, phase);
-                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, (double)gait.speed_m_s * t,
-                                          path.position_m.x);
-                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, amplitude * cos(rate * t),
-                                          path.position_m.y);
-                ASSERT_SAME_FLOAT(gait.speed_m_s, path.velocity_m_s.x);
-                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -amplitude * rate * sin(rate * t),
-                                          path.velocity_m_s.y);
+        for (int side = SADDLE_LEFT; side <= SADDLE_RIGHT; side++) {
+            const saddle_quarter_t quarter = quarter_at(SPEEDS[i], (saddle_side_t)side);
+            const double sign = side == SADDLE_LEFT ? 1.0 : -1.0;
+            const double rate = 0.5 * PI / (double)quarter.length_m;
+            const double amplitude = sign * (double)quarter.amplitude_m;
+            for (int k = -100; k <= 100; k++) {
+                const double x = 0.01 * k * (double)quarter.length_m;
+                const float angle = saddle_quarter_angle_rad(&quarter, (float)x);
+                const saddle_sample_t lateral = saddle_com_lateral(&quarter, angle);
+                const double stance_y = 0.5 * sign * (double)quarter.width_m;
+                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, rate * x, angle);
+                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, amplitude * cos(rate * x) - stance_y,
+                                          lateral.value);
+                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -amplitude * rate * sin(rate * x),
+                                          lateral.slope);
             }
         }
     }
@@ -38,14 +42,21 @@ static void test_path_is_the_equation_s(void)
 
 static void test_via_points(void)
 {
-    const saddle_gait_t gait = saddle_gait(&config, 1.2f);
-    const saddle_com_path_t foot = saddle_com_path(&gait, SADDLE_RIGHT, 0.0f);
-    ASSERT_SAME_FLOAT(0.0f, foot.position_m.x);
-    ASSERT_SAME_FLOAT(-gait.lateral_amplitude_m, foot.position_m.y);
-    const saddle_com_path_t saddle = saddle_com_path(&gait, SADDLE_LEFT, 1.57079633f);
-    ASSERT_SAME_FLOAT(0.5f * gait.step_length_m, saddle.position_m.x);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.0, saddle.position_m.y); /* cos(pi/2) is off by 9e-8 x A_y */
-    TEST_ASSERT_TRUE(saddle.velocity_m_s.y < 0.0f);            /* from the left foot to the right */
+    const saddle_quarter_t left = quarter_at(1.2f, SADDLE_LEFT);
+    const saddle_sample_t foot = saddle_com_lateral(&left, 0.0f);
+    ASSERT_SAME_FLOAT(left.amplitude_m - 0.5f * left.width_m, foot.value);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, foot.slope);
+    const float end = saddle_quarter_angle_rad(&left, left.length_m);
+    const saddle_sample_t saddle = saddle_com_lateral(&left, end);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, -0.05, saddle.value); /* on the walking line */
+    TEST_ASSERT_TRUE(saddle.slope < 0.0f);                /* from the left foot to the right */
+}
+
+static void test_angle_ends_with_the_quarter(void)
+{
+    const saddle_quarter_t quarter = quarter_at(1.2f, SADDLE_LEFT);
+    ASSERT_SAME_FLOAT(1.57079633f, saddle_quarter_angle_rad(&quarter, 2.0f * quarter.length_m));
+    ASSERT_SAME_FLOAT(-1.57079633f, saddle_quarter_angle_rad(&quarter, -1.01f * quarter.length_m));
 }
 
 int main(void)
@@ -53,5 +64,6 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_path_is_the_equation_s);
     RUN_TEST(test_via_points);
+    RUN_TEST(test_angle_ends_with_the_quarter);
     return UNITY_END();
 }

@@ -36,6 +36,12 @@ static void test_default_is_the_paper_s_and_passes(void)
     ASSERT_SAME_FLOAT(3.0f, config.peak_speed_m_s);
     ASSERT_SAME_FLOAT(0.11f, config.ankle_time_constant_s);
     ASSERT_SAME_FLOAT(0.05f, config.swing_clearance_m);
+    ASSERT_SAME_FLOAT(0.5f, config.acceleration_m_s2);
+    ASSERT_SAME_FLOAT(0.8f, config.shift_time_s);
+    ASSERT_SAME_FLOAT(1.0f, config.step_length_factor_left);
+    ASSERT_SAME_FLOAT(1.0f, config.step_length_factor_right);
+    ASSERT_SAME_FLOAT(1.0f, config.step_width_factor_left);
+    ASSERT_SAME_FLOAT(1.0f, config.step_width_factor_right);
     TEST_ASSERT_EQUAL_INT(SADDLE_ANKLE_ERF, config.ankle);
 }
 
@@ -145,9 +151,21 @@ static void test_configuration_without_a_feasible_walk_is_named(void)
 
 static void test_reach_that_lays_the_pendulum_flat_is_named(void)
 {
-    config.peak_speed_m_s = 5.0f; /* reach 0.806 m: with 0.22 m across, 0.698 of 0.833 m^2 */
+    config.peak_speed_m_s = 3.9f; /* reach 0.629 m: with 0.22 m across, 0.444 of 0.833 m^2 */
     TEST_ASSERT_NULL(saddle_config_check(&config));
-    config.step_width_slow_m = 0.6f; /* 1.01 of 0.833 m^2 */
+    config.body_height_m = 1.2f; /* reach 0.515 m, 0.313 of 0.374 m^2 */
+    TEST_ASSERT_NULL(saddle_config_check(&config));
+    config.step_width_slow_m = 0.4f; /* 0.425 of 0.374 m^2 */
+    TEST_ASSERT_EQUAL_STRING("peak_speed_m_s", saddle_config_check(&config));
+}
+
+static void test_longer_side_that_lays_the_pendulum_flat_is_named(void)
+{
+    config.peak_speed_m_s = 3.9f; /* reach 0.629 m; 1.4 times that with 0.22 m: 0.824 of 0.833 m^2 */
+    config.step_length_factor_right = 1.4f;
+    TEST_ASSERT_NULL(saddle_config_check(&config));
+    config.step_length_factor_right = 1.0f;
+    config.step_length_factor_left = 1.42f; /* 0.846 */
     TEST_ASSERT_EQUAL_STRING("peak_speed_m_s", saddle_config_check(&config));
 }
 
@@ -166,5 +184,6 @@ int main(void)
     RUN_TEST(test_half_step_out_of_reach_is_named);
     RUN_TEST(test_configuration_without_a_feasible_walk_is_named);
     RUN_TEST(test_reach_that_lays_the_pendulum_flat_is_named);
+    RUN_TEST(test_longer_side_that_lays_the_pendulum_flat_is_named);
     return UNITY_END();
 }

@@ -1,90 +1,124 @@
-/** The swing foot: on the line through stance CoP and CoM, with a bump of minimum jerk. */
+/** The swing foot: on the line through stance CoP and CoM, fading in from where it lifted off. */
 #include "core_test.h"
 
 #include <saddlewalk/foot_swing.h>
 
-static const float CLEARANCE_M = 0.05f;
+static saddle_swing_t swing;
 
-void setUp(void) {}
+void setUp(void)
+{
+    swing = (saddle_swing_t){
+        .lift_progress = 0.0f, .land_progress = 1.0f, .line_y_m = -0.1f, .clearance_m = 0.05f};
+}
 
 void tearDown(void) {}
-
-static saddle_swing_t swing_at(float com_x, float com_y, float progress)
-{
-    const saddle_vec2_t stance = {0.0f, 0.05f};
-    const saddle_vec2_t com = {com_x, com_y};
-    const saddle_vec2_t velocity = {1.2f, -0.1f};
-    return saddle_foot_swing(stance, com, velocity, -0.05f, progress, 1.7f, CLEARANCE_M);
-}
 
 static void test_foot_lies_on_the_line_through_stance_and_com(void)
 {
     uint32_t state = 3;
     for (int i = 0; i < 2000; i++) {
-        const saddle_vec2_t stance = {random_in(&state, -1.0f, 1.0f), random_in(&state, 0.1f, 0.2f)};
-        const saddle_vec2_t com = {random_in(&state, -1.0f, 1.0f), random_in(&state, -0.02f, 0.02f)};
-        const float line_y = random_in(&state, -0.2f, -0.1f);
-        const saddle_vec2_t at_rest = {0.0f, 0.0f};
-        const saddle_swing_t swing =
-            saddle_foot_swing(stance, com, at_rest, line_y, 0.5f, 1.0f, CLEARANCE_M);
-        const double share = ((double)line_y - (double)stance.y) / ((double)com.y - (double)stance.y);
-        const double x = (double)stance.x + share * ((double)com.x - (double)stance.x);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-5, x, swing.position_m.x); /* up to 11 m: float steps 1e-6 */
-        ASSERT_SAME_FLOAT(line_y, swing.position_m.y);
-        TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, swing.velocity_m_s.x);
+        const float x = random_in(&state, -1.0f, 1.0f);
+        const saddle_sample_t lateral = {random_in(&state, -0.1f, -0.02f), 0.0f};
+        swing.line_y_m = random_in(&state, -0.3f, -0.15f);
+        const saddle_swing_state_t foot = saddle_foot_swing(&swing, 0.5f, x, lateral, 0.0f, 1.0f);
+        const double expected = (double)swing.line_y_m * (double)x / (double)lateral.value;
+        TEST_ASSERT_DOUBLE_WITHIN(2e-6, expected, foot.position_m.x); /* up to 15 m: steps of 1e-6 */
+        ASSERT_SAME_FLOAT(swing.line_y_m, foot.position_m.y);
+        TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, foot.velocity_m_s.x);
     }
 }
 
 static void test_foot_passes_behind_beside_and_ahead(void)
 {
-    const float step_m = 0.7f;
-    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.7, swing_at(-0.5f * step_m, 0, 0).position_m.x);
-    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.0, swing_at(0, 0.013f, 0.5f).position_m.x);
-    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.7, swing_at(0.5f * step_m, 0, 1).position_m.x);
+    const saddle_sample_t midway = {-0.05f, 0.0f};
+    const saddle_sample_t beside = {-0.037f, 0.0f};
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.7, saddle_swing_line(&swing, -0.35f, midway).value);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, saddle_swing_line(&swing, 0.0f, beside).value);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.7, saddle_swing_line(&swing, 0.35f, midway).value);
 }
 
-static void test_horizontal_velocity_is_the_derivative(void)
+static void test_slope_of_the_line_is_its_derivative(void)
 {
     for (int i = -10; i <= 10; i++) {
         const double x = 0.03 * i;
-        const double y = 0.0013 * (10.0 - fabs((double)i));
+        const double y = -0.05 + 0.0013 * (10.0 - fabs((double)i));
+        const double slope = -0.08;
         const double h = 1e-6;
-        const double ahead = -0.1 * (x + 1.2 * h) / (y - 0.1 * h - 0.05);
-        const double behind = -0.1 * (x - 1.2 * h) / (y + 0.1 * h - 0.05);
-        const saddle_swing_t swing = swing_at((float)x, (float)y, 0.3f);
-        TEST_ASSERT_DOUBLE_WITHIN(5e-6, (ahead - behind) / (2 * h), swing.velocity_m_s.x); /* 5 m/s */
-        ASSERT_SAME_FLOAT(0.0f, swing.velocity_m_s.y);
+        const double ahead = -0.1 * (x + h) / (y + slope * h);
+        const double behind = -0.1 * (x - h) / (y - slope * h);
+        const saddle_sample_t lateral = {(float)y, (float)slope};
+        TEST_ASSERT_DOUBLE_WITHIN(5e-6, (ahead - behind) / (2 * h),
+                                  saddle_swing_line(&swing, (float)x, lateral).slope); /* up to 4 */
     }
 }
 
-static double bump(double progress)
+static double min_jerk(double s)
 {
-    const double s = 2.0 * fmin(progress, 1.0 - progress);
-    return 0.05 * (10.0 * pow(s, 3) - 15.0 * pow(s, 4) + 6.0 * pow(s, 5));
+    const double in = fmin(fmax(s, 0.0), 1.0);
+    return 10.0 * pow(in, 3) - 15.0 * pow(in, 4) + 6.0 * pow(in, 5);
 }
 
-static void test_height_is_the_bump_and_its_velocity_the_derivative(void)
+/* Position in double at a progress, for a CoM that moves at 1.2 m/s and 1.7 quarters a second. */
+static void expected_at(double progress, double at[3])
 {
-    for (int i = 1; i < 1000; i++) {
-        const double p = 0.001 * i;
-        const double h = 1e-6;
-        const saddle_swing_t swing = swing_at(0.1f, 0.01f, (float)p);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-7, bump(p), swing.position_m.z); /* 5 cm: steps of 4e-9 */
-        const double rate = 1.7 * (bump(p + h) - bump(p - h)) / (2 * h);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, rate, swing.velocity_m_s.z);
-    }
+    const double duration = (double)swing.land_progress - (double)swing.lift_progress;
+    const double air = fmin(fmax((progress - (double)swing.lift_progress) / duration, 0.0), 1.0);
+    const double fade = 1.0 - min_jerk(2.0 * air);
+    const double x = 1.2 * (progress - 0.4) / 1.7;
+    const double y = -0.04 - 0.02 * x;
+    at[0] = (double)swing.line_y_m * x / y + (double)swing.offset_m.x * fade;
+    at[1] = (double)swing.line_y_m + (double)swing.offset_m.y * fade;
+    at[2] = (double)swing.clearance_m * min_jerk(2.0 * fmin(air, 1.0 - air));
 }
 
-static void test_foot_leaves_and_lands_at_rest_on_the_ground(void)
+static void test_swing_and_its_velocity_whole_and_half(void)
 {
-    const float ends[] = {0.0f, 1.0f};
+    static const float ends[][2] = {{0.0f, 1.0f}, {0.5f, 1.0f}, {0.0f, 0.5f}};
+    swing.offset_m = (saddle_vec2_t){-0.08f, 0.03f};
     for (size_t i = 0; i < COUNT_OF(ends); i++) {
-        const saddle_swing_t swing = swing_at(0.1f, 0.01f, ends[i]);
-        TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, swing.position_m.z);
-        TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, swing.velocity_m_s.z);
+        swing.lift_progress = ends[i][0];
+        swing.land_progress = ends[i][1];
+        for (int k = 1; k < 500; k++) {
+            const double h = 1e-6;
+            const double p = (double)ends[i][0] + 0.002 * k * (double)(ends[i][1] - ends[i][0]);
+            double at[3];
+            double ahead[3];
+            double behind[3];
+            expected_at(p, at);
+            expected_at(p + h, ahead);
+            expected_at(p - h, behind);
+            const double x = 1.2 * (p - 0.4) / 1.7;
+            const saddle_sample_t lateral = {(float)(-0.04 - 0.02 * x), -0.02f};
+            const saddle_swing_state_t foot =
+                saddle_foot_swing(&swing, (float)p, (float)x, lateral, 1.2f, 1.7f);
+            const float position[] = {foot.position_m.x, foot.position_m.y, foot.position_m.z};
+            const float velocity[] = {foot.velocity_m_s.x, foot.velocity_m_s.y,
+                                      foot.velocity_m_s.z};
+            for (int axis = 0; axis < 3; axis++) {
+                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, at[axis], position[axis]);
+                TEST_ASSERT_DOUBLE_WITHIN(6e-6, 1.7 * (ahead[axis] - behind[axis]) / (2 * h),
+                                          velocity[axis]); /* up to 4 m/s, float progress */
+            }
+        }
     }
-    ASSERT_SAME_FLOAT(CLEARANCE_M, swing_at(0.1f, 0.01f, 0.5f).position_m.z);
-    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, swing_at(0.1f, 0.01f, 0.5f).velocity_m_s.z);
+}
+
+static void test_foot_leaves_where_it_stood_and_lands_on_the_line_both_at_rest(void)
+{
+    const saddle_sample_t lateral = {-0.05f, 0.0f};
+    swing.offset_m = (saddle_vec2_t){-0.08f, 0.03f};
+    const saddle_swing_state_t lift = saddle_foot_swing(&swing, 0.0f, -0.35f, lateral, 0.0f, 1.7f);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.78, lift.position_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.07, lift.position_m.y);
+    const saddle_swing_state_t land = saddle_foot_swing(&swing, 1.0f, 0.35f, lateral, 0.0f, 1.7f);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.7, land.position_m.x);
+    ASSERT_SAME_FLOAT(swing.line_y_m, land.position_m.y);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, lift.position_m.z);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, land.position_m.z);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, lift.velocity_m_s.z);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, land.velocity_m_s.z);
+    ASSERT_SAME_FLOAT(swing.clearance_m,
+                      saddle_foot_swing(&swing, 0.5f, 0.0f, lateral, 0.0f, 1.7f).position_m.z);
 }
 
 int main(void)
@@ -92,8 +126,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_foot_lies_on_the_line_through_stance_and_com);
     RUN_TEST(test_foot_passes_behind_beside_and_ahead);
-    RUN_TEST(test_horizontal_velocity_is_the_derivative);
-    RUN_TEST(test_height_is_the_bump_and_its_velocity_the_derivative);
-    RUN_TEST(test_foot_leaves_and_lands_at_rest_on_the_ground);
+    RUN_TEST(test_slope_of_the_line_is_its_derivative);
+    RUN_TEST(test_swing_and_its_velocity_whole_and_half);
+    RUN_TEST(test_foot_leaves_where_it_stood_and_lands_on_the_line_both_at_rest);
     return UNITY_END();
 }

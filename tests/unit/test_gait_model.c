@@ -14,6 +14,16 @@ void setUp(void)
 
 void tearDown(void) {}
 
+static double double_of(saddle_fixed_t position)
+{
+    return (double)position / (1e6 * 4398046511104.0);
+}
+
+static saddle_quarter_t quarter_at(float speed)
+{
+    return saddle_quarter(&config, SADDLE_LEFT, 0.3f, saddle_step_width_m(&config, speed), speed);
+}
+
 static void test_body_constants(void)
 {
     /* Four decimals are printed: half of the last. */
@@ -39,20 +49,50 @@ static void test_step_width_is_piecewise_with_the_ends_in_the_middle_piece(void)
     ASSERT_SAME_FLOAT(0.10f, saddle_step_width_m(&config, nextafterf(1.1f, 2.0f)));
 }
 
-static void test_gait_at_the_paper_s_speeds(void)
+static void test_half_step_is_the_regression_s_to_the_nanometre(void)
 {
-    static const double speeds[] = {0.7, 1.0, 1.2, 1.6};
-    for (size_t i = 0; i < COUNT_OF(speeds); i++) {
-        const double v = speeds[i];
-        const saddle_gait_t gait = saddle_gait(&config, (float)v);
-        const double step = 2.0 * (0.1802 * v + 0.1351);
-        ASSERT_SAME_FLOAT((float)v, gait.speed_m_s);
-        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, step, gait.step_length_m);
-        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.02656 * v + 0.002575,
-                                  gait.vertical_amplitude_m);
-        TEST_ASSERT_DOUBLE_WITHIN(4 * FLOAT_TOLERANCE, v / step, gait.cadence_hz); /* up to 2 Hz */
-        ASSERT_SAME_FLOAT(saddle_step_width_m(&config, (float)v), gait.step_width_m);
+    for (float speed = 0.0f; speed < 1.93f; speed += 0.013f) {
+        const saddle_fixed_t fixed = saddle_speed_from_m_s(speed);
+        const double slope = (double)config.half_step_slope_s;
+        const double expected = slope * (double)speed + (double)config.half_step_intercept_m;
+        TEST_ASSERT_DOUBLE_WITHIN(2e-10, expected, /* the slope is counted in 2^-31 s */
+                                  double_of(saddle_half_step(&config, SADDLE_LEFT, fixed)));
+        TEST_ASSERT_TRUE(saddle_half_step(&config, SADDLE_LEFT, fixed) ==
+                         saddle_half_step(&config, SADDLE_RIGHT, fixed));
     }
+}
+
+static void test_quarter_at_the_paper_s_speeds(void)
+{
+    static const float speeds[] = {0.7f, 1.0f, 1.2f, 1.6f};
+    for (size_t i = 0; i < COUNT_OF(speeds); i++) {
+        const saddle_quarter_t quarter = quarter_at(speeds[i]);
+        const double v = (double)speeds[i];
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.02656 * v + 0.002575, quarter.vertical_m);
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, (double)quarter.width_m / (2.0 * PI * v),
+                                  quarter.amplitude_m);
+        ASSERT_SAME_FLOAT(saddle_step_width_m(&config, speeds[i]), quarter.width_m);
+        ASSERT_SAME_FLOAT(0.3f, quarter.length_m);
+        TEST_ASSERT_EQUAL_INT(SADDLE_LEFT, quarter.stance);
+    }
+    ASSERT_SAME_FLOAT(0.02f, saddle_quarter(&config, SADDLE_LEFT, 0.3f, 0.001f, 1.0f).width_m);
+}
+
+static void test_sides_have_their_own_step_length_and_width(void)
+{
+    config.step_length_factor_left = 0.8f;
+    config.step_length_factor_right = 1.1f;
+    config.step_width_factor_left = 0.7f;
+    config.step_width_factor_right = 1.6f;
+    const saddle_fixed_t speed = saddle_speed_from_m_s(1.0f);
+    const double left = double_of(saddle_half_step(&config, SADDLE_LEFT, speed));
+    const double right = double_of(saddle_half_step(&config, SADDLE_RIGHT, speed));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.8 * 0.3153, left);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.1 * 0.3153, right);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.7 * 0.0664,
+                              saddle_landing_y_m(&config, SADDLE_LEFT, 1.0f));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -1.6 * 0.0664,
+                              saddle_landing_y_m(&config, SADDLE_RIGHT, 1.0f));
 }
 
 /* min S_SW = 1 - 2 A_y / d_SW = 1 - 1/(pi v), the paper's finding. */
@@ -63,8 +103,8 @@ static void test_lateral_amplitude_gives_the_paper_s_stability(void)
         double s_sw;
     } table[] = {{0.7f, 0.545}, {1.0f, 0.682}, {1.2f, 0.735}, {1.6f, 0.801}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
-        const saddle_gait_t gait = saddle_gait(&config, table[i].speed);
-        const double s_sw = 1.0 - 2.0 * (double)gait.lateral_amplitude_m / (double)gait.step_width_m;
+        const saddle_quarter_t gait = quarter_at(table[i].speed);
+        const double s_sw = 1.0 - 2.0 * (double)gait.amplitude_m / (double)gait.width_m;
         TEST_ASSERT_DOUBLE_WITHIN(5e-4, table[i].s_sw, s_sw);
     }
 }
@@ -74,17 +114,17 @@ static void test_lateral_amplitude_is_tangency_below_half_a_metre_per_second(voi
     const float slow[] = {0.01f, 0.318f, 0.5f};
     for (size_t i = 0; i < COUNT_OF(slow); i++) {
         TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.22 / PI,
-                                  saddle_gait(&config, slow[i]).lateral_amplitude_m);
+                                  quarter_at(slow[i]).amplitude_m);
     }
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.22 / (2.0 * PI * 0.55),
-                              saddle_gait(&config, 0.55f).lateral_amplitude_m);
+                              quarter_at(0.55f).amplitude_m);
 }
 
 static void test_com_never_reaches_the_foot(void)
 {
     for (float speed = 0.01f; speed < 5.0f; speed += 0.01f) {
-        const saddle_gait_t gait = saddle_gait(&config, speed);
-        TEST_ASSERT_TRUE(gait.lateral_amplitude_m < 0.5f * gait.step_width_m);
+        const saddle_quarter_t quarter = quarter_at(speed);
+        TEST_ASSERT_TRUE(quarter.amplitude_m < 0.5f * quarter.width_m);
     }
 }
 
@@ -146,7 +186,9 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_body_constants);
     RUN_TEST(test_step_width_is_piecewise_with_the_ends_in_the_middle_piece);
-    RUN_TEST(test_gait_at_the_paper_s_speeds);
+    RUN_TEST(test_half_step_is_the_regression_s_to_the_nanometre);
+    RUN_TEST(test_quarter_at_the_paper_s_speeds);
+    RUN_TEST(test_sides_have_their_own_step_length_and_width);
     RUN_TEST(test_lateral_amplitude_gives_the_paper_s_stability);
     RUN_TEST(test_lateral_amplitude_is_tangency_below_half_a_metre_per_second);
     RUN_TEST(test_com_never_reaches_the_foot);

@@ -36,7 +36,7 @@ static void test_crc_check_value(void)
     TEST_ASSERT_EQUAL_HEX8(0x00, saddle_wire_crc(NULL, 0));
 }
 
-/** Written out by hand from the DBC: 12000, 1745, little endian, version 1. */
+/** Written out by hand from the DBC: 12000, 1745, little endian, then the wire version. */
 static void test_command_bytes(void)
 {
     const saddle_frame_t frame = command_frame(5);
@@ -70,7 +70,7 @@ static void test_frame_under_another_identifier_is_refused(void)
 static void test_what_the_firmware_does_not_receive_is_malformed(void)
 {
     const saddle_frame_t frame = command_frame(0);
-    const uint32_t identifiers[] = {0x101, 0x127, 0x140, 0x7FF, 0x80000100u, UINT32_MAX};
+    const uint32_t identifiers[] = {0x101, 0x127, 0x128, 0x140, 0x7FF, 0x80000100u, UINT32_MAX};
     for (size_t i = 0; i < sizeof identifiers / sizeof identifiers[0]; ++i) {
         TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE,
                               saddle_wire_accept(&receiver, identifiers[i], frame.data, 8));
@@ -79,7 +79,7 @@ static void test_what_the_firmware_does_not_receive_is_malformed(void)
         TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE,
                               saddle_wire_accept(&receiver, frame.id, NULL, length));
     }
-    TEST_ASSERT_EQUAL_UINT32(14, receiver.malformed);
+    TEST_ASSERT_EQUAL_UINT32(15, receiver.malformed);
     TEST_ASSERT_EQUAL_UINT32(0, receiver.accepted);
 }
 
@@ -149,6 +149,40 @@ static void test_decoding_leaves_ages_and_other_parts(void)
     TEST_ASSERT_EQUAL_UINT32(33, received.foot[SADDLE_RIGHT].age_us);
 }
 
+/** Written out by hand from the DBC: stopping in bits 4 and 5 of byte 1; 0.25 s, the end of the
+ *  range for what never comes, not available for what is no number; -0.1 rad, 0.3 rad, 2 mm. */
+static void test_events_and_pitch_bytes(void)
+{
+    const uint8_t events[7] = {0x37, 0xFA, 0x00, 0xFF, 0x7F, 0x00, 0x80};
+    const uint8_t pitch[7] = {0x07, 0x0C, 0xFE, 0xDC, 0x05, 0x14, 0x00};
+    const saddle_wire_health_t health = {0, 0};
+    const saddle_output_t output = {.plan = {.valid = true,
+                                             .mode = SADDLE_MODE_STOPPING,
+                                             .time_to_via_point_s = 0.25f,
+                                             .time_to_heel_strike_s = 1000.0f,
+                                             .time_to_toe_off_s = NAN,
+                                             .foot_pitch_rad = {-0.1f, 0.3f},
+                                             .knee_flexion_m = 0.002f}};
+    saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
+    saddle_wire_encode_output(&output, &health, 7, frames);
+    TEST_ASSERT_EQUAL_HEX16(0x128, frames[8].id);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(events, &frames[8].data[1], 7);
+    TEST_ASSERT_EQUAL_HEX16(0x129, frames[9].id);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(pitch, &frames[9].data[1], 7);
+    TEST_ASSERT_EQUAL_HEX16(0x140, frames[SADDLE_WIRE_OUTPUT_FRAMES - 1u].id);
+}
+
+static void test_a_plan_that_is_not_valid_has_no_numbers(void)
+{
+    const uint8_t nothing[7] = {0x00, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80};
+    const saddle_wire_health_t health = {0, 0};
+    const saddle_output_t output = {.plan = {.valid = false}};
+    saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
+    saddle_wire_encode_output(&output, &health, 0, frames);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(nothing, &frames[8].data[1], 7);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(nothing, &frames[9].data[1], 7);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -161,5 +195,7 @@ int main(void)
     RUN_TEST(test_counter_rule);
     RUN_TEST(test_messages_count_apart);
     RUN_TEST(test_decoding_leaves_ages_and_other_parts);
+    RUN_TEST(test_events_and_pitch_bytes);
+    RUN_TEST(test_a_plan_that_is_not_valid_has_no_numbers);
     return UNITY_END();
 }

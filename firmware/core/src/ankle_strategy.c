@@ -11,35 +11,38 @@ static float elongation_m(const saddle_config_t *config, float angle_rad)
 }
 
 /* [E13] The stance leg's elongation at heel strike that gives the CoM its height there. */
-static float toe_off_elongation_m(const saddle_body_t *body, const saddle_gait_t *gait,
+static float toe_off_elongation_m(const saddle_body_t *body, const saddle_quarter_t *quarter,
                                   float lead_m)
 {
-    const float height_m = body->pendulum_m - gait->vertical_amplitude_m;
-    const float x_m = 0.5f * gait->step_length_m - lead_m;
-    const float y_m = gait->lateral_amplitude_m * saddle_sin(SADDLE_PI * lead_m / gait->step_length_m) -
-                      0.5f * gait->step_width_m;
+    const float height_m = body->pendulum_m - quarter->vertical_m;
+    const float x_m = quarter->length_m - lead_m;
+    const float y_m =
+        quarter->amplitude_m * saddle_sin(SADDLE_HALF_PI * lead_m / quarter->length_m) -
+        0.5f * quarter->width_m;
     return sqrtf(height_m * height_m + x_m * x_m + y_m * y_m) - body->pendulum_m;
 }
 
 saddle_transition_t saddle_transition(const saddle_config_t *config, const saddle_body_t *body,
-                                      const saddle_gait_t *gait, float heel_strike_rad)
+                                      const saddle_quarter_t *quarter, float speed_m_s,
+                                      float heel_strike_rad)
 {
     const float lead_m = config->cop_range_m * (1.0f - saddle_cos(heel_strike_rad));
     const float sine =
-        toe_off_elongation_m(body, gait, lead_m) / (2.0f * config->cop_range_m);
+        toe_off_elongation_m(body, quarter, lead_m) / (2.0f * config->cop_range_m);
     const float limited = saddle_clamp(sine, 0.0f, 1.0f);
     saddle_transition_t transition;
     transition.heel_strike_rad = heel_strike_rad;
     transition.toe_off_rad = 2.0f * saddle_asin(limited);
-    transition.heel_strike_lead_s = lead_m / gait->speed_m_s;
+    transition.heel_strike_lead_s = lead_m / speed_m_s;
     transition.toe_off_limited = sine < 0.0f || sine > 1.0f;
     return transition;
 }
 
 saddle_ankle_state_t saddle_ankle(const saddle_config_t *config, const saddle_body_t *body,
-                                  const saddle_transition_t *transition, float time_s)
+                                  const saddle_transition_t *transition, float time_s,
+                                  bool toe_off_acts)
 {
-    saddle_ankle_state_t ankle = {0.0f, 0.0f, body->pendulum_m, 0.0f};
+    saddle_ankle_state_t ankle = {0.0f, 0.0f, body->pendulum_m, 0.0f, 0.0f};
     if (config->ankle == SADDLE_ANKLE_RIGID) {
         return ankle;
     }
@@ -50,7 +53,6 @@ saddle_ankle_state_t saddle_ankle(const saddle_config_t *config, const saddle_bo
     ankle.toe_off_rad = transition->toe_off_rad * (1.0f + progress);
     ankle.heel_strike_rad = transition->heel_strike_rad * (1.0f - progress);
 
-    const bool toe_off_acts = time_s < 0.0f;
     const float angle_rad = toe_off_acts ? ankle.toe_off_rad : ankle.heel_strike_rad;
     const float angle_rate = progress_rate * (toe_off_acts ? transition->toe_off_rad
                                                            : -transition->heel_strike_rad);
@@ -69,4 +71,35 @@ void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m
     *height_rate_m_s = (length_m * ankle->leg_rate_m_s - offset_m.x * velocity_m_s.x -
                         offset_m.y * velocity_m_s.y) /
                        height;
+}
+
+saddle_sample_t saddle_cycloid(const saddle_body_t *body, const saddle_quarter_t *quarter,
+                               float angle_rad)
+{
+    const float offset_m = 0.5f * quarter->width_m - quarter->amplitude_m;
+    const float via_point_m =
+        sqrtf(body->pendulum_m * body->pendulum_m - offset_m * offset_m);
+    const float sine = saddle_sin(angle_rad);
+    saddle_sample_t height;
+    height.value = via_point_m - quarter->vertical_m * sine * sine;
+    height.slope =
+        -SADDLE_PI * quarter->vertical_m * sine * saddle_cos(angle_rad) / quarter->length_m;
+    return height;
+}
+
+saddle_ankle_state_t saddle_ankle_for_leg(const saddle_config_t *config, const saddle_body_t *body,
+                                          float leg_length_m, bool toe_off_acts, bool *limited)
+{
+    const float elongation = leg_length_m - body->pendulum_m;
+    const float sine = elongation / (2.0f * config->cop_range_m);
+    const float angle_rad = 2.0f * saddle_asin(saddle_clamp(sine, 0.0f, 1.0f));
+    saddle_ankle_state_t ankle = {0.0f, 0.0f, leg_length_m, 0.0f, 0.0f};
+    if (toe_off_acts) {
+        ankle.toe_off_rad = angle_rad;
+    } else {
+        ankle.heel_strike_rad = angle_rad;
+    }
+    ankle.knee_flexion_m = elongation < 0.0f ? -elongation : 0.0f;
+    *limited = sine > 1.0f;
+    return ankle;
 }

@@ -1,16 +1,17 @@
 #include <saddlewalk/com_path.h>
 #include <saddlewalk/saddle_math.h>
 
-saddle_com_path_t saddle_com_path(const saddle_gait_t *gait, saddle_side_t stance,
-                                  float step_phase_rad)
+float saddle_quarter_angle_rad(const saddle_quarter_t *quarter, float x_m)
 {
-    const float amplitude_m =
-        stance == SADDLE_LEFT ? gait->lateral_amplitude_m : -gait->lateral_amplitude_m;
-    const float phase_rate_rad_s = SADDLE_PI * gait->cadence_hz;
-    saddle_com_path_t path;
-    path.position_m.x = gait->step_length_m * (step_phase_rad / SADDLE_PI);
-    path.position_m.y = amplitude_m * saddle_cos(step_phase_rad);
-    path.velocity_m_s.x = gait->speed_m_s;
-    path.velocity_m_s.y = -amplitude_m * phase_rate_rad_s * saddle_sin(step_phase_rad);
-    return path;
+    return SADDLE_HALF_PI * saddle_clamp(x_m / quarter->length_m, -1.0f, 1.0f);
+}
+
+saddle_sample_t saddle_com_lateral(const saddle_quarter_t *quarter, float angle_rad)
+{
+    const float outward = quarter->stance == SADDLE_LEFT ? 1.0f : -1.0f;
+    const float amplitude_m = outward * quarter->amplitude_m;
+    saddle_sample_t lateral;
+    lateral.value = amplitude_m * saddle_cos(angle_rad) - outward * 0.5f * quarter->width_m;
+    lateral.slope = -amplitude_m * saddle_sin(angle_rad) * SADDLE_HALF_PI / quarter->length_m;
+    return lateral;
 }

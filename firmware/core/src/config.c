@@ -24,9 +24,15 @@ static const saddle_config_field_t FIELDS[] = {
     FIELD(half_step_intercept_m, 0.01f, 0.5f),
     FIELD(vertical_slope_s, -0.1f, 0.1f),
     FIELD(vertical_intercept_m, 0.0f, 0.1f),
-    FIELD(peak_speed_m_s, 0.5f, 5.0f),
+    FIELD(peak_speed_m_s, 0.5f, 3.9f),
     FIELD(ankle_time_constant_s, 0.01f, 1.0f),
     FIELD(heel_strike_max_rad, 0.0f, 1.0f),
+    FIELD(acceleration_m_s2, 0.01f, 5.0f),
+    FIELD(shift_time_s, 0.1f, 10.0f),
+    FIELD(step_length_factor_left, 0.5f, 1.5f),
+    FIELD(step_length_factor_right, 0.5f, 1.5f),
+    FIELD(step_width_factor_left, 0.5f, 2.0f),
+    FIELD(step_width_factor_right, 0.5f, 2.0f),
     FIELD(swing_clearance_m, 0.0f, 0.3f),
     FIELD(tick_max_s, 0.001f, 0.25f),
     FIELD(measurement_max_age_s, 0.001f, 10.0f),
@@ -54,6 +60,12 @@ saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg)
         .peak_speed_m_s = 3.0f,
         .ankle_time_constant_s = 0.11f,
         .heel_strike_max_rad = 0.5236f,
+        .acceleration_m_s2 = 0.5f,
+        .shift_time_s = 0.8f,
+        .step_length_factor_left = 1.0f,
+        .step_length_factor_right = 1.0f,
+        .step_width_factor_left = 1.0f,
+        .step_width_factor_right = 1.0f,
         .swing_clearance_m = 0.05f,
         .tick_max_s = 0.2f,
         .measurement_max_age_s = 0.24f,
@@ -94,7 +106,7 @@ static const char *check_step_width(const saddle_config_t *config)
 }
 
 /* The reach peak_speed / (2 w_n) must exceed the shortest half step, and the pendulum must reach
- * from there to the CoM without lying flat. */
+ * from there, on the longer side, to the CoM without lying flat. */
 static const char *check_reach(const saddle_config_t *config)
 {
     const float pendulum_m = config->pendulum_ratio * config->body_height_m;
@@ -109,7 +121,9 @@ static const char *check_reach(const saddle_config_t *config)
     if (reach_m2 < shortest_m * shortest_m) {
         return "half_step_intercept_m";
     }
-    if (reach_m2 + width_m * width_m > 0.8f * pendulum_m * pendulum_m) {
+    const float factor =
+        larger(1.0f, larger(config->step_length_factor_left, config->step_length_factor_right));
+    if (factor * factor * reach_m2 + width_m * width_m > 0.8f * pendulum_m * pendulum_m) {
         return "peak_speed_m_s";
     }
     return NULL;

@@ -2,31 +2,40 @@
 #include <saddlewalk/saddle_math.h>
 #include <stdbool.h>
 
-/* Rises and sinks by one minimum-jerk profile each, [E10]. */
-static void swing_height(float progress, float rate_hz, float clearance_m, saddle_swing_t *swing)
+saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle_sample_t lateral)
 {
-    const bool rising = progress < 0.5f;
-    const float profile = 2.0f * (rising ? progress : 1.0f - progress);
-    const float rest = 1.0f - profile;
-    const float slope = 30.0f * profile * profile * rest * rest;
-    swing->position_m.z = clearance_m * saddle_min_jerk(profile);
-    swing->velocity_m_s.z = clearance_m * slope * 2.0f * (rising ? rate_hz : -rate_hz);
+    const float rise_m = lateral.value;
+    saddle_sample_t line;
+    line.value = swing->line_y_m * x_m / rise_m;
+    line.slope = swing->line_y_m * (rise_m - lateral.slope * x_m) / (rise_m * rise_m);
+    return line;
 }
 
-saddle_swing_t saddle_foot_swing(saddle_vec2_t stance_m, saddle_vec2_t com_m,
-                                 saddle_vec2_t com_velocity_m_s, float swing_y_m, float progress,
-                                 float progress_rate_hz, float clearance_m)
+/* Rises and sinks by one minimum-jerk profile each. air: 0 at lift-off, 1 at landing. */
+static void swing_height(float air, float air_rate_hz, float clearance_m,
+                         saddle_swing_state_t *foot)
 {
-    const float run_m = com_m.x - stance_m.x;
-    const float rise_m = com_m.y - stance_m.y;
-    const float width_m = swing_y_m - stance_m.y;
-    saddle_swing_t swing;
-    swing.position_m.x = stance_m.x + width_m * run_m / rise_m;
-    swing.position_m.y = swing_y_m;
-    swing.velocity_m_s.x = width_m *
-                           (com_velocity_m_s.x * rise_m - com_velocity_m_s.y * run_m) /
-                           (rise_m * rise_m);
-    swing.velocity_m_s.y = 0.0f;
-    swing_height(progress, progress_rate_hz, clearance_m, &swing);
-    return swing;
+    const bool rising = air < 0.5f;
+    const float profile = 2.0f * (rising ? air : 1.0f - air);
+    const float rate_hz = 2.0f * (rising ? air_rate_hz : -air_rate_hz);
+    foot->position_m.z = clearance_m * saddle_min_jerk(profile);
+    foot->velocity_m_s.z = clearance_m * saddle_min_jerk_slope(profile) * rate_hz;
+}
+
+saddle_swing_state_t saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
+                                       saddle_sample_t lateral, float speed_m_s, float rate_hz)
+{
+    const float duration = swing->land_progress - swing->lift_progress;
+    const float air = saddle_clamp((progress - swing->lift_progress) / duration, 0.0f, 1.0f);
+    const float air_rate_hz = rate_hz / duration;
+    const float fade = 1.0f - saddle_min_jerk(2.0f * air);
+    const float fade_rate_hz = -2.0f * saddle_min_jerk_slope(2.0f * air) * air_rate_hz;
+    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral);
+    saddle_swing_state_t foot;
+    foot.position_m.x = line.value + swing->offset_m.x * fade;
+    foot.position_m.y = swing->line_y_m + swing->offset_m.y * fade;
+    foot.velocity_m_s.x = line.slope * speed_m_s + swing->offset_m.x * fade_rate_hz;
+    foot.velocity_m_s.y = swing->offset_m.y * fade_rate_hz;
+    swing_height(air, air_rate_hz, swing->clearance_m, &foot);
+    return foot;
 }

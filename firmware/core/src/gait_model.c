@@ -6,6 +6,9 @@
 /* Below this speed A_y is the tangency value d_SW / pi, [E7]. */
 #define TANGENCY_SPEED_M_S 0.5f
 
+/* Narrower steps are taken as this wide: the swing foot's line needs the CoM off the stance foot. */
+#define WIDTH_MIN_M 0.02f
+
 static float half_step_m(const saddle_config_t *config, float speed_m_s)
 {
     return config->half_step_slope_s * speed_m_s + config->half_step_intercept_m;
@@ -44,18 +47,33 @@ float saddle_step_width_m(const saddle_config_t *config, float speed_m_s)
     return config->step_width_slope_s * speed_m_s + config->step_width_intercept_m;
 }
 
-saddle_gait_t saddle_gait(const saddle_config_t *config, float speed_m_s)
+saddle_quarter_t saddle_quarter(const saddle_config_t *config, saddle_side_t stance, float length_m,
+                                float width_m, float speed_m_s)
 {
-    const float amplitude_speed =
-        speed_m_s > TANGENCY_SPEED_M_S ? speed_m_s : TANGENCY_SPEED_M_S;
-    saddle_gait_t gait;
-    gait.speed_m_s = speed_m_s;
-    gait.step_length_m = 2.0f * half_step_m(config, speed_m_s);
-    gait.step_width_m = saddle_step_width_m(config, speed_m_s);
-    gait.lateral_amplitude_m = gait.step_width_m / (2.0f * SADDLE_PI * amplitude_speed);
-    gait.vertical_amplitude_m = config->vertical_slope_s * speed_m_s + config->vertical_intercept_m;
-    gait.cadence_hz = speed_m_s / gait.step_length_m;
-    return gait;
+    const float amplitude_speed = speed_m_s > TANGENCY_SPEED_M_S ? speed_m_s : TANGENCY_SPEED_M_S;
+    saddle_quarter_t quarter;
+    quarter.stance = stance;
+    quarter.length_m = length_m;
+    quarter.width_m = width_m > WIDTH_MIN_M ? width_m : WIDTH_MIN_M;
+    quarter.amplitude_m = quarter.width_m / (2.0f * SADDLE_PI * amplitude_speed);
+    quarter.vertical_m = config->vertical_slope_s * speed_m_s + config->vertical_intercept_m;
+    return quarter;
+}
+
+saddle_fixed_t saddle_half_step(const saddle_config_t *config, saddle_side_t foot,
+                                saddle_fixed_t speed)
+{
+    const float factor =
+        foot == SADDLE_LEFT ? config->step_length_factor_left : config->step_length_factor_right;
+    return saddle_speed_times_s(speed, factor * config->half_step_slope_s) +
+           saddle_position_from_m(factor * config->half_step_intercept_m);
+}
+
+float saddle_landing_y_m(const saddle_config_t *config, saddle_side_t foot, float speed_m_s)
+{
+    const float half_width_m = 0.5f * saddle_step_width_m(config, speed_m_s);
+    return foot == SADDLE_LEFT ? config->step_width_factor_left * half_width_m
+                               : -config->step_width_factor_right * half_width_m;
 }
 
 saddle_step_bounds_t saddle_step_bounds(const saddle_config_t *config, const saddle_body_t *body,

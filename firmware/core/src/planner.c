@@ -1,23 +1,31 @@
-#include <saddlewalk/com_path.h>
-#include <saddlewalk/foot_swing.h>
+#include <math.h>
 #include <saddlewalk/planner.h>
 #include <saddlewalk/saddle_math.h>
 
-/* Fixed-point phase: its upper 32 bits count 2^-32 strides. A step is half a stride. */
-#define Q32 4294967296.0f
-#define STEP_Q32 2147483648.0f
-#define QUARTER_Q32 0x40000000u
-#define STEP_MASK_Q32 0x7FFFFFFFu
-
-/* The largest float below 2 pi: the last 2^-25 of a stride would round up to a whole turn. */
+/* The largest float below 2 pi. */
 #define THETA_MAX_RAD 6.28318500f
 
-/* Where the phase lies in its step. */
-typedef struct {
-    float progress;    /* [0, 1] from one saddle via point to the next */
-    float angle_rad;   /* [-pi/2, pi/2], 0 at the foot via point */
-    float to_saddle_s; /* until the step ends */
-} step_phase_t;
+/* Feet further apart along x than this share of the shortest half step stand as in a step. */
+#define STAGGER_SHARE 1.0f
+
+/* Feet that a walk can start from are at least this far apart across. */
+#define START_WIDTH_MIN_M 0.05f
+
+/* A stop slows to this speed at most before it brakes. */
+#define CRAWL_MAX_M_S 0.3f
+
+/* A last swing, a shift and a first step may follow each other within one long tick. */
+#define MODES_A_TICK 4
+
+/* How far a plan is foretold: within the range of fixed-point positions, and of use. */
+#define WAY_MAX_M 1.9f
+#define HORIZON_MAX_S 5.0f
+#define STANDING_HORIZON_US 500000u
+
+static saddle_side_t other_side(saddle_side_t side)
+{
+    return side == SADDLE_LEFT ? SADDLE_RIGHT : SADDLE_LEFT;
+}
 
 bool saddle_command_usable(const saddle_command_t *command)
 {
@@ -39,161 +47,523 @@ static float limited(float value, float min, float max, saddle_limit_t limit, ui
     return inside;
 }
 
-static void begin_walk(saddle_planner_t *planner, const saddle_config_t *config,
-                       const saddle_body_t *body, const saddle_command_t *command)
+/* The wanted speed and angle, feasible. */
+static uint32_t obey(saddle_planner_t *planner, const saddle_config_t *config,
+                     const saddle_body_t *body, const saddle_command_t *command)
 {
     uint32_t limits = 0;
-    float speed_m_s = command->speed_m_s;
-    if (speed_m_s >= body->speed_ceiling_m_s) {
-        speed_m_s = SADDLE_CEILING_MARGIN * body->speed_ceiling_m_s;
+    if (command->mode == (uint8_t)SADDLE_COMMAND_STAND || command->speed_m_s == 0.0f) {
+        planner->speed_m_s = 0.0f;
+        return 0;
+    }
+    planner->speed_m_s = limited(command->speed_m_s, 0.0f, body->speed_ceiling_m_s,
+                                 SADDLE_LIMIT_SPEED, &limits);
+    if (planner->speed_m_s > 0.0f) {
+        planner->speed_m_s = limited(planner->speed_m_s, SADDLE_SPEED_FLOOR_M_S,
+                                     body->speed_ceiling_m_s, SADDLE_LIMIT_SPEED, &limits);
+    }
+    if (command->speed_m_s >= body->speed_ceiling_m_s) {
+        planner->speed_m_s = SADDLE_CEILING_MARGIN * body->speed_ceiling_m_s;
         limits |= (uint32_t)SADDLE_LIMIT_SPEED;
     }
-    speed_m_s = limited(speed_m_s, SADDLE_SPEED_FLOOR_M_S, body->speed_ceiling_m_s,
-                        SADDLE_LIMIT_SPEED, &limits);
-    const float heel_strike_rad =
-        limited(command->heel_strike_rad, 0.0f, config->heel_strike_max_rad,
-                SADDLE_LIMIT_HEEL_STRIKE, &limits);
+    planner->heel_strike_rad = limited(command->heel_strike_rad, 0.0f, config->heel_strike_max_rad,
+                                       SADDLE_LIMIT_HEEL_STRIKE, &limits);
+    return limits;
+}
 
-    planner->phase_q64 = 0;
-    planner->stride_count = 0;
-    planner->origin_x_nm = 0;
-    planner->gait = saddle_gait(config, speed_m_s);
-    planner->transition = saddle_transition(config, body, &planner->gait, heel_strike_rad);
-    if (planner->transition.toe_off_limited) {
-        limits |= (uint32_t)SADDLE_LIMIT_TOE_OFF;
+void saddle_planner_reset(saddle_planner_t *planner, const saddle_config_t *config)
+{
+    const float left_y_m = saddle_landing_y_m(config, SADDLE_LEFT, 0.0f);
+    const float right_y_m = saddle_landing_y_m(config, SADDLE_RIGHT, 0.0f);
+    *planner = (saddle_planner_t){.mode = (uint8_t)SADDLE_MODE_STANDING};
+    planner->cycle.quarter.stance = SADDLE_LEFT;
+    planner->cycle.stance_y_m = left_y_m;
+    planner->other_m.y = right_y_m - left_y_m;
+    planner->shift_to_m.y = 0.5f * planner->other_m.y;
+}
+
+static void begin_shift(saddle_planner_t *planner, saddle_mode_t mode, saddle_vec2_t to_m)
+{
+    planner->mode = (uint8_t)mode;
+    planner->shifting = true;
+    planner->shift_us = 0;
+    planner->shift_from_m = planner->shift_to_m;
+    planner->shift_to_m = to_m;
+}
+
+/* Stand on the measured feet from now on, if a walk can start from them. */
+static uint32_t stand_on(saddle_planner_t *planner, const saddle_config_t *config,
+                         const saddle_body_t *body, const saddle_feet_t *feet)
+{
+    const saddle_vec2_t left = feet->cop_m[SADDLE_LEFT];
+    const saddle_vec2_t right = feet->cop_m[SADDLE_RIGHT];
+    if (!feet->known || !feet->contact[SADDLE_LEFT] || !feet->contact[SADDLE_RIGHT]) {
+        return 0;
     }
-    planner->commanded_speed_m_s = command->speed_m_s;
-    planner->commanded_heel_strike_rad = command->heel_strike_rad;
-    planner->start_limits = limits;
-    planner->walking = true;
-}
-
-static uint32_t phase_q32(const saddle_planner_t *planner)
-{
-    return (uint32_t)(planner->phase_q64 >> 32);
-}
-
-/* Heel strikes are at a quarter and at three quarters of the stride. */
-static uint32_t step_count(const saddle_planner_t *planner)
-{
-    const uint32_t quarter = phase_q32(planner) >> 30;
-    return 2u * planner->stride_count + (quarter + 1u) / 2u;
-}
-
-/* A share of a stride in [0, 1) with 64 fractional bits, without rounding. */
-static uint64_t to_q64(float strides)
-{
-    const float scaled = strides * Q32;
-    const uint32_t upper = (uint32_t)scaled;
-    const uint32_t lower = (uint32_t)((scaled - (float)upper) * Q32);
-    return ((uint64_t)upper << 32) | lower;
-}
-
-static void advance(saddle_planner_t *planner, float dt_s)
-{
-    const float strides = saddle_clamp(0.5f * planner->gait.cadence_hz * dt_s, 0.0f, 0.5f);
-    const uint32_t steps_before = step_count(planner);
-    const uint64_t increment = to_q64(strides);
-    planner->phase_q64 += increment;
-    if (planner->phase_q64 < increment) {
-        planner->stride_count++;
+    const float reach_m = 2.0f * body->half_step_max_m;
+    if (!saddle_in_range(left.x - right.x, -reach_m, reach_m) ||
+        !saddle_in_range(left.y - right.y, START_WIDTH_MIN_M, 2.0f * config->step_width_slow_m)) {
+        return (uint32_t)SADDLE_LIMIT_FEET;
     }
-    if (step_count(planner) != steps_before) {
-        const int32_t half_step_nm = (int32_t)(0.5e9f * planner->gait.step_length_m);
-        planner->origin_x_nm += 2 * (int64_t)half_step_nm;
+    const saddle_side_t front = right.x > left.x ? SADDLE_RIGHT : SADDLE_LEFT;
+    const saddle_vec2_t stance = feet->cop_m[front];
+    const saddle_vec2_t other = feet->cop_m[other_side(front)];
+    planner->cycle.quarter.stance = front;
+    planner->cycle.stance_y_m = 0.5f * (stance.y - other.y);
+    planner->other_m.x = other.x - stance.x;
+    planner->other_m.y = other.y - stance.y;
+    planner->shift_to_m.x = 0.5f * planner->other_m.x;
+    planner->shift_to_m.y = 0.5f * planner->other_m.y;
+    return 0;
+}
+
+/* From standing: feet a step apart are midway through it; else the weight goes to the stance leg. */
+static void begin_start(saddle_planner_t *planner, const saddle_config_t *config)
+{
+    const bool left = planner->cycle.quarter.stance == SADDLE_LEFT;
+    const float stagger_m = -planner->other_m.x;
+    const bool midway = stagger_m > STAGGER_SHARE * config->half_step_intercept_m;
+    const saddle_quarter_t beside =
+        saddle_quarter(config, planner->cycle.quarter.stance, config->half_step_intercept_m,
+                       left ? -planner->other_m.y : planner->other_m.y, 0.0f);
+    const float gap_m = 0.5f * beside.width_m - beside.amplitude_m;
+    const saddle_vec2_t over_foot_m = {0.0f, left ? -gap_m : gap_m};
+    if (midway) {
+        planner->start_phase = left ? 3u : 1u;
+        begin_shift(planner, SADDLE_MODE_STARTING, planner->shift_to_m);
+        return;
+    }
+    planner->start_phase = left ? 0u : 2u;
+    begin_shift(planner, SADDLE_MODE_STARTING, over_foot_m);
+}
+
+/* Both feet on the ground: the CoM's height over the leg that carries, the nearer one. */
+static float standing_height_m(const saddle_planner_t *planner, const saddle_body_t *body,
+                               saddle_vec2_t com_m)
+{
+    const float other_x_m = com_m.x - planner->other_m.x;
+    const float other_y_m = com_m.y - planner->other_m.y;
+    const float stance_m2 = com_m.x * com_m.x + com_m.y * com_m.y;
+    const float other_m2 = other_x_m * other_x_m + other_y_m * other_y_m;
+    const float nearer_m2 = stance_m2 < other_m2 ? stance_m2 : other_m2;
+    return sqrtf(body->pendulum_m * body->pendulum_m - nearer_m2);
+}
+
+/* Towards the wanted speed. */
+static void walk_on(saddle_planner_t *planner, const saddle_config_t *config)
+{
+    planner->braking = false;
+    planner->cycle.last_swing = false;
+    planner->cycle.profile.target = saddle_speed_from_m_s(planner->speed_m_s);
+    planner->cycle.profile.rate_m_s2 = config->acceleration_m_s2;
+}
+
+/* The CoM stands over the first stance leg: take the first step. */
+static void begin_steps(saddle_planner_t *planner, const saddle_config_t *config,
+                        const saddle_body_t *body)
+{
+    const saddle_cycle_start_t start = {
+        .phase = planner->start_phase,
+        .stance_y_m = planner->cycle.stance_y_m,
+        .other_m = planner->other_m,
+        .com_y_m = planner->shift_to_m.y,
+        .com_z_m = standing_height_m(planner, body, planner->shift_to_m),
+    };
+    planner->mode = (uint8_t)SADDLE_MODE_STARTING;
+    planner->shifting = false;
+    planner->landing_open = false;
+    planner->cycle.heel_strike_rad = 0.0f;
+    planner->cycle.next_heel_strike_rad = planner->heel_strike_rad;
+    saddle_cycle_begin(&planner->cycle, config, body, &start);
+    walk_on(planner, config);
+}
+
+/* A last swing has come down beside the stance foot. */
+static void stand_beside(saddle_planner_t *planner)
+{
+    const saddle_cycle_t *cycle = &planner->cycle;
+    planner->other_m.x = 0.0f;
+    planner->other_m.y = cycle->swing.line_y_m;
+    planner->start_phase = cycle->quarter.stance == SADDLE_LEFT ? 0u : 2u;
+    planner->braking = false;
+}
+
+static saddle_vec2_t between_feet_m(const saddle_planner_t *planner)
+{
+    const saddle_vec2_t middle_m = {0.5f * planner->other_m.x, 0.5f * planner->other_m.y};
+    return middle_m;
+}
+
+/* Once a last swing has landed: step on if a walk is wanted again, else bring the CoM between. */
+static void after_last_swing(saddle_planner_t *planner, const saddle_config_t *config,
+                             const saddle_body_t *body, float com_y_m)
+{
+    stand_beside(planner);
+    planner->shift_to_m.x = 0.0f;
+    planner->shift_to_m.y = com_y_m;
+    if (planner->speed_m_s > 0.0f) {
+        begin_steps(planner, config, body);
+    } else {
+        begin_shift(planner, SADDLE_MODE_STOPPING, between_feet_m(planner));
     }
 }
 
-static step_phase_t step_phase(const saddle_planner_t *planner)
+/* A shift of weight is complete. */
+static void after_shift(saddle_planner_t *planner, const saddle_config_t *config,
+                        const saddle_body_t *body)
 {
-    const uint32_t in_step = (phase_q32(planner) + QUARTER_Q32) & STEP_MASK_Q32;
-    const int32_t from_via_point = (int32_t)in_step - (int32_t)QUARTER_Q32;
-    step_phase_t step;
-    step.progress = (float)in_step / STEP_Q32;
-    step.angle_rad = (float)from_via_point * (SADDLE_PI / STEP_Q32);
-    step.to_saddle_s =
-        (float)(STEP_MASK_Q32 + 1u - in_step) / (STEP_Q32 * planner->gait.cadence_hz);
-    return step;
+    const bool over_leg = planner->mode == (uint8_t)SADDLE_MODE_STARTING;
+    const bool wanted = planner->speed_m_s > 0.0f;
+    if (over_leg && wanted) {
+        begin_steps(planner, config, body);
+    } else if (over_leg) {
+        begin_shift(planner, SADDLE_MODE_STOPPING, between_feet_m(planner));
+    } else {
+        planner->mode = (uint8_t)SADDLE_MODE_STANDING;
+        planner->shifting = false;
+    }
 }
 
-static void plan_feet(const saddle_planner_t *planner, const saddle_config_t *config,
-                      const step_phase_t *step, const saddle_com_path_t *com, saddle_plan_t *plan)
+/* Returns the microseconds left for what follows the shift. */
+static uint32_t advance_shift(saddle_planner_t *planner, const saddle_config_t *config,
+                              const saddle_body_t *body, uint32_t dt_us)
 {
-    const float half_width_m = 0.5f * planner->gait.step_width_m;
-    const float stance_y_m = plan->support == SADDLE_LEFT ? half_width_m : -half_width_m;
-    const saddle_vec2_t stance_m = {0.0f, stance_y_m};
-    const saddle_swing_t swing =
-        saddle_foot_swing(stance_m, com->position_m, com->velocity_m_s, -stance_y_m,
-                          step->progress, planner->gait.cadence_hz, config->swing_clearance_m);
-    const saddle_vec3_t stance_foot_m = {stance_m.x, stance_m.y, 0.0f};
-    plan->foot_m[plan->support] = stance_foot_m;
-    plan->foot_m[1 - plan->support] = swing.position_m;
-    plan->swing_velocity_m_s = swing.velocity_m_s;
-    plan->landing_m.x = planner->gait.step_length_m;
-    plan->landing_m.y = -stance_y_m;
-    plan->time_to_heel_strike_s = step->to_saddle_s;
+    const uint32_t duration_us = (uint32_t)(config->shift_time_s * 1.0e6f);
+    planner->shift_us += dt_us;
+    if (planner->shift_us < duration_us) {
+        return 0;
+    }
+    const uint32_t rest_us = planner->shift_us - duration_us;
+    after_shift(planner, config, body);
+    return rest_us;
 }
 
-static void plan_com(const saddle_planner_t *planner, const saddle_config_t *config,
-                     const saddle_body_t *body, const step_phase_t *step,
-                     const saddle_com_path_t *com, saddle_plan_t *plan)
+/* Way to the place where a stop can end: the foot via point after the next landing. */
+static float stopping_way_m(const saddle_cycle_t *cycle)
 {
-    const float since_saddle_s = step->progress / planner->gait.cadence_hz;
-    const float from_saddle_s = step->angle_rad < 0.0f ? since_saddle_s : -step->to_saddle_s;
-    const saddle_ankle_state_t ankle =
-        saddle_ankle(config, body, &planner->transition, from_saddle_s);
-    const saddle_vec3_t *stance_m = &plan->foot_m[plan->support];
-    const saddle_vec2_t offset_m = {com->position_m.x - stance_m->x,
-                                    com->position_m.y - stance_m->y};
-    plan->com_m.x = com->position_m.x;
-    plan->com_m.y = com->position_m.y;
-    plan->com_velocity_m_s.x = com->velocity_m_s.x;
-    plan->com_velocity_m_s.y = com->velocity_m_s.y;
-    saddle_com_height(&ankle, offset_m, com->velocity_m_s, &plan->com_m.z,
-                      &plan->com_velocity_m_s.z);
-    plan->leg_length_m = ankle.leg_length_m;
-    plan->toe_off_rad = ankle.toe_off_rad;
-    plan->heel_strike_rad = ankle.heel_strike_rad;
+    const float way_m = saddle_cycle_way_to_via_point_m(cycle);
+    return cycle->phase % 2u == 0u ? way_m + cycle->quarter.length_m : way_m;
 }
 
-static void write_plan(const saddle_planner_t *planner, const saddle_config_t *config,
-                       const saddle_body_t *body, saddle_plan_t *plan)
+static bool before_landing(const saddle_cycle_t *cycle)
 {
-    const step_phase_t step = step_phase(planner);
-    plan->valid = true;
-    plan->phase = (uint8_t)(phase_q32(planner) >> 30);
-    plan->step_count = step_count(planner);
-    plan->support = (uint8_t)(plan->step_count % 2u == 0u ? SADDLE_LEFT : SADDLE_RIGHT);
-    plan->stride_count = planner->stride_count;
-    plan->theta_rad =
-        saddle_clamp((float)phase_q32(planner) * (SADDLE_TWO_PI / Q32), 0.0f, THETA_MAX_RAD);
-    plan->origin_x_nm = planner->origin_x_nm;
-    plan->speed_m_s = planner->gait.speed_m_s;
-    plan->step_length_m = planner->gait.step_length_m;
-    plan->step_width_m = planner->gait.step_width_m;
+    return cycle->phase % 2u == 0u;
+}
 
-    const saddle_com_path_t com =
-        saddle_com_path(&planner->gait, (saddle_side_t)plan->support, step.angle_rad);
-    plan_feet(planner, config, &step, &com, plan);
-    plan_com(planner, config, body, &step, &com, plan);
+/* The speed at which a stop goes on until it brakes: slow, feasible, and such that every step is
+ * long enough to brake. */
+static float crawl_m_s(const saddle_config_t *config, const saddle_body_t *body)
+{
+    const float feasible_m_s = SADDLE_CEILING_MARGIN * body->speed_ceiling_m_s;
+    const float braked_m_s = sqrtf(config->acceleration_m_s2 * config->half_step_intercept_m);
+    return saddle_clamp(braked_m_s, 0.0f, saddle_clamp(feasible_m_s, 0.0f, CRAWL_MAX_M_S));
+}
+
+/* May the step after the next landing be the last, braking no harder than allowed? */
+static void choose_last_swing(saddle_planner_t *planner, const saddle_config_t *config,
+                              float speed_m_s)
+{
+    saddle_cycle_t *cycle = &planner->cycle;
+    if (before_landing(cycle)) {
+        const float way_m = stopping_way_m(cycle);
+        cycle->last_swing = speed_m_s * speed_m_s <= 2.0f * config->acceleration_m_s2 * way_m;
+        planner->braking = planner->braking && cycle->last_swing;
+    }
+}
+
+/* The speed from which, after the longest tick at it, a stop within way_m brakes as hard as allowed:
+ * below it there is time until the next tick. */
+static float latest_braking_speed_m_s(const saddle_config_t *config, float way_m)
+{
+    const float rate_m_s2 = config->acceleration_m_s2;
+    const float in_a_tick_m_s = rate_m_s2 * config->tick_max_s;
+    return sqrtf(in_a_tick_m_s * in_a_tick_m_s + 2.0f * rate_m_s2 * way_m) - in_a_tick_m_s;
+}
+
+static void profile_of_stop(saddle_planner_t *planner, const saddle_config_t *config,
+                            const saddle_body_t *body)
+{
+    saddle_cycle_t *cycle = &planner->cycle;
+    saddle_speed_profile_t *profile = &cycle->profile;
+    const float speed_m_s = saddle_speed_to_m_s(profile->speed);
+    choose_last_swing(planner, config, speed_m_s);
+    const float way_m = stopping_way_m(cycle);
+    const float latest_m_s = latest_braking_speed_m_s(config, way_m);
+    const float crawl = crawl_m_s(config, body);
+    const float slow_m_s = cycle->last_swing && latest_m_s < crawl ? latest_m_s : crawl;
+    planner->braking = cycle->last_swing && (planner->braking || speed_m_s >= slow_m_s);
+    if (planner->braking) {
+        profile->target = 0;
+        profile->rate_m_s2 = way_m > 0.0f ? speed_m_s * speed_m_s / (2.0f * way_m) : 0.0f;
+    } else {
+        profile->target = saddle_speed_from_m_s(slow_m_s);
+        profile->rate_m_s2 = config->acceleration_m_s2;
+    }
+}
+
+static void choose_profile(saddle_planner_t *planner, const saddle_config_t *config,
+                           const saddle_body_t *body)
+{
+    saddle_cycle_t *cycle = &planner->cycle;
+    const bool must_end = cycle->last_swing && !before_landing(cycle);
+    if (planner->speed_m_s > 0.0f && !must_end) {
+        if (planner->mode == (uint8_t)SADDLE_MODE_STOPPING) {
+            planner->mode = (uint8_t)SADDLE_MODE_WALKING;
+        }
+        walk_on(planner, config);
+        return;
+    }
+    planner->mode = (uint8_t)SADDLE_MODE_STOPPING;
+    profile_of_stop(planner, config, body);
+}
+
+/* Returns the microseconds left for what follows a last swing. */
+static uint32_t advance_cycle(saddle_planner_t *planner, const saddle_config_t *config,
+                          const saddle_body_t *body, uint32_t dt_us)
+{
+    saddle_cycle_t *cycle = &planner->cycle;
+    const uint32_t steps_before = cycle->step_count;
+    bool arrived;
+    const uint32_t rest_us = saddle_cycle_advance(cycle, config, body, planner->heel_strike_rad,
+                                                  dt_us, &arrived);
+    if (cycle->step_count != steps_before) {
+        planner->landing_open = true;
+        if (planner->mode == (uint8_t)SADDLE_MODE_STARTING) {
+            planner->mode = (uint8_t)SADDLE_MODE_WALKING;
+        }
+    }
+    if (arrived) {
+        const saddle_pose_t pose = saddle_cycle_pose(cycle, config, body);
+        after_last_swing(planner, config, body, pose.com_m.y);
+    }
+    return rest_us;
+}
+
+void saddle_planner_advance(saddle_planner_t *planner, const saddle_config_t *config,
+                            const saddle_body_t *body, uint32_t dt_us)
+{
+    uint32_t rest_us = dt_us;
+    for (int i = 0; i < MODES_A_TICK && rest_us > 0u; i++) {
+        if (planner->shifting) {
+            rest_us = advance_shift(planner, config, body, rest_us);
+        } else if (planner->mode != (uint8_t)SADDLE_MODE_STANDING) {
+            rest_us = advance_cycle(planner, config, body, rest_us);
+        } else {
+            return;
+        }
+    }
+}
+
+uint32_t saddle_planner_horizon_us(const saddle_planner_t *planner)
+{
+    const saddle_cycle_t *cycle = &planner->cycle;
+    if (planner->shifting || planner->mode == (uint8_t)SADDLE_MODE_STANDING) {
+        return STANDING_HORIZON_US;
+    }
+    const float step_m = before_landing(cycle) ? 2.0f : 3.0f;
+    const float way_m = saddle_clamp(
+        saddle_cycle_way_to_via_point_m(cycle) + step_m * cycle->quarter.length_m, 0.0f, WAY_MAX_M);
+    const float time_s = saddle_profile_time_s(&cycle->profile, way_m);
+    return (uint32_t)(1.0e6f * saddle_clamp(time_s, 0.0f, HORIZON_MAX_S));
+}
+
+/* The measured landing, once, as soon as the new stance foot is on the ground. */
+static uint32_t take_landing(saddle_planner_t *planner, const saddle_config_t *config,
+                             const saddle_body_t *body, const saddle_feet_t *feet)
+{
+    const saddle_side_t stance = planner->cycle.quarter.stance;
+    const saddle_vec2_t *landed = &feet->cop_m[stance];
+    const saddle_vec2_t *rear = &feet->cop_m[other_side(stance)];
+    const bool waiting = planner->landing_open && !planner->shifting &&
+                         !before_landing(&planner->cycle);
+    if (!waiting || !feet->known || !feet->contact[stance]) {
+        return 0;
+    }
+    planner->landing_open = false;
+    if (!feet->contact[other_side(stance)]) {
+        return 0;
+    }
+    const saddle_vec2_t step_m = {landed->x - rear->x, landed->y - rear->y};
+    return saddle_cycle_land(&planner->cycle, config, body, step_m) ? 0u
+                                                                    : (uint32_t)SADDLE_LIMIT_FEET;
+}
+
+uint32_t saddle_planner_join(saddle_planner_t *planner, const saddle_config_t *config,
+                             const saddle_body_t *body, const saddle_command_t *command)
+{
+    const uint32_t limits = obey(planner, config, body, command);
+    const float left_y_m = saddle_landing_y_m(config, SADDLE_LEFT, planner->speed_m_s);
+    const float right_y_m = saddle_landing_y_m(config, SADDLE_RIGHT, planner->speed_m_s);
+    const saddle_cycle_start_t start = {
+        .phase = 0,
+        .stance_y_m = left_y_m,
+        .other_m = {0.0f, right_y_m - left_y_m},
+        .speed = saddle_speed_from_m_s(planner->speed_m_s),
+        .under_way = true,
+    };
+    planner->mode = (uint8_t)SADDLE_MODE_WALKING;
+    planner->shifting = false;
+    planner->cycle = (saddle_cycle_t){.next_heel_strike_rad = planner->heel_strike_rad};
+    saddle_cycle_begin(&planner->cycle, config, body, &start);
+    return limits;
 }
 
 uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_config_t *config,
                                const saddle_body_t *body, const saddle_command_t *command,
-                               float dt_s, saddle_plan_t *plan)
+                               const saddle_feet_t *feet, uint32_t dt_us)
 {
-    if (command->mode == (uint8_t)SADDLE_COMMAND_STAND) {
-        planner->walking = false;
-        *plan = (saddle_plan_t){.valid = false};
-        return 0;
+    saddle_planner_advance(planner, config, body, dt_us);
+    uint32_t limits = obey(planner, config, body, command);
+    if (planner->mode == (uint8_t)SADDLE_MODE_STANDING) {
+        if (planner->speed_m_s > 0.0f) {
+            limits |= stand_on(planner, config, body, feet);
+            begin_start(planner, config);
+        }
+        return limits;
     }
-    if (planner->walking) {
-        advance(planner, dt_s);
+    if (!planner->shifting) {
+        limits |= take_landing(planner, config, body, feet);
+        choose_profile(planner, config, body);
+    }
+    return limits;
+}
+
+/* Half of the step after the next via point, or of the running one; 0 beside the stance foot. */
+static float half_step_to_landing_m(const saddle_cycle_t *cycle, const saddle_config_t *config,
+                                    float way_m)
+{
+    if (before_landing(cycle)) {
+        return cycle->quarter.length_m;
+    }
+    if (cycle->last_swing) {
+        return 0.0f;
+    }
+    const saddle_fixed_t speed = saddle_profile_speed_after(&cycle->profile, way_m);
+    return saddle_position_to_m(
+        saddle_half_step(config, other_side(cycle->quarter.stance), speed));
+}
+
+/* A last swing brakes evenly, to rest at its end: twice the time that its speed would take. */
+static float time_of_last_swing_s(const saddle_cycle_t *cycle, float way_m)
+{
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    return speed_m_s > 0.0f ? saddle_clamp(2.0f * way_m / speed_m_s, 0.0f, SADDLE_TIME_MAX_S)
+                            : 0.0f;
+}
+
+static void write_step_events(const saddle_cycle_t *cycle, const saddle_config_t *config,
+                              saddle_plan_t *plan)
+{
+    const float way_m = saddle_cycle_way_to_via_point_m(cycle);
+    const float half_step_m = half_step_to_landing_m(cycle, config, way_m);
+    plan->landing_m.x = 2.0f * half_step_m;
+    plan->landing_m.y = cycle->stance_y_m + cycle->swing.line_y_m;
+    if (cycle->last_swing && !before_landing(cycle) && cycle->profile.target == 0) {
+        plan->time_to_via_point_s = time_of_last_swing_s(cycle, way_m);
+        plan->time_to_heel_strike_s = SADDLE_TIME_MAX_S;
+        plan->time_to_toe_off_s = SADDLE_TIME_MAX_S;
+        return;
+    }
+    const float landing_m = before_landing(cycle) ? way_m : way_m + half_step_m;
+    const float lead_m =
+        config->cop_range_m * (1.0f - saddle_cos(cycle->next_heel_strike_rad));
+    const float heel_m = landing_m > lead_m ? landing_m - lead_m : 0.0f;
+    plan->time_to_via_point_s = saddle_profile_time_s(&cycle->profile, way_m);
+    plan->time_to_toe_off_s = saddle_profile_time_s(&cycle->profile, landing_m);
+    plan->time_to_heel_strike_s = saddle_profile_time_s(&cycle->profile, heel_m);
+}
+
+static void write_events(const saddle_planner_t *planner, const saddle_config_t *config,
+                         saddle_plan_t *plan)
+{
+    if (!planner->shifting && planner->mode != (uint8_t)SADDLE_MODE_STANDING) {
+        write_step_events(&planner->cycle, config, plan);
+        return;
+    }
+    const float shifted_s = (float)planner->shift_us * 1.0e-6f;
+    plan->time_to_via_point_s = planner->shifting ? config->shift_time_s - shifted_s : 0.0f;
+    plan->time_to_heel_strike_s = SADDLE_TIME_MAX_S;
+    plan->time_to_toe_off_s = SADDLE_TIME_MAX_S;
+}
+
+static void write_standing(const saddle_planner_t *planner, const saddle_config_t *config,
+                           const saddle_body_t *body, saddle_plan_t *plan)
+{
+    const saddle_side_t stance = planner->cycle.quarter.stance;
+    const float duration_s = config->shift_time_s;
+    const float s = planner->shifting ? (float)planner->shift_us * 1.0e-6f / duration_s : 1.0f;
+    const float share = saddle_min_jerk(s);
+    const float rate_hz = saddle_min_jerk_slope(s) / duration_s;
+    const float dx_m = planner->shift_to_m.x - planner->shift_from_m.x;
+    const float dy_m = planner->shift_to_m.y - planner->shift_from_m.y;
+    const saddle_vec2_t on_the_way_m = {planner->shift_from_m.x + share * dx_m,
+                                        planner->shift_from_m.y + share * dy_m};
+    const saddle_vec2_t com_m = planner->shifting ? on_the_way_m : planner->shift_to_m;
+    const float z_m = standing_height_m(planner, body, com_m);
+    const float stance_m2 = com_m.x * com_m.x + com_m.y * com_m.y;
+    const float leg_m = sqrtf(stance_m2 + z_m * z_m);
+    const saddle_vec2_t near_m =
+        leg_m > body->pendulum_m * 1.00001f
+            ? (saddle_vec2_t){com_m.x - planner->other_m.x, com_m.y - planner->other_m.y}
+            : com_m;
+    plan->com_m = (saddle_vec3_t){com_m.x, planner->cycle.stance_y_m + com_m.y, z_m};
+    plan->com_velocity_m_s.x = rate_hz * dx_m;
+    plan->com_velocity_m_s.y = rate_hz * dy_m;
+    plan->com_velocity_m_s.z =
+        -(near_m.x * plan->com_velocity_m_s.x + near_m.y * plan->com_velocity_m_s.y) / z_m;
+    plan->foot_m[stance] = (saddle_vec3_t){0.0f, planner->cycle.stance_y_m, 0.0f};
+    plan->foot_m[other_side(stance)] = (saddle_vec3_t){
+        planner->other_m.x, planner->cycle.stance_y_m + planner->other_m.y, 0.0f};
+    plan->leg_length_m = leg_m;
+    plan->landing_m.x = planner->other_m.x;
+    plan->landing_m.y = planner->cycle.stance_y_m + planner->other_m.y;
+}
+
+static uint32_t write_walking(const saddle_planner_t *planner, const saddle_config_t *config,
+                              const saddle_body_t *body, saddle_plan_t *plan)
+{
+    const saddle_cycle_t *cycle = &planner->cycle;
+    const saddle_side_t stance = cycle->quarter.stance;
+    const saddle_pose_t pose = saddle_cycle_pose(cycle, config, body);
+    const float theta_rad = SADDLE_HALF_PI * ((float)cycle->phase + pose.progress);
+    plan->phase = cycle->phase;
+    plan->theta_rad = saddle_clamp(theta_rad, 0.0f, THETA_MAX_RAD);
+    plan->com_m = pose.com_m;
+    plan->com_m.y += cycle->stance_y_m;
+    plan->com_velocity_m_s = pose.com_velocity_m_s;
+    plan->foot_m[stance] = (saddle_vec3_t){0.0f, cycle->stance_y_m, 0.0f};
+    plan->foot_m[other_side(stance)] = pose.swing.position_m;
+    plan->foot_m[other_side(stance)].y += cycle->stance_y_m;
+    plan->foot_pitch_rad[stance] = pose.stance_pitch_rad;
+    plan->foot_pitch_rad[other_side(stance)] = pose.swing_pitch_rad;
+    plan->swing_velocity_m_s = pose.swing.velocity_m_s;
+    plan->leg_length_m = pose.ankle.leg_length_m;
+    plan->knee_flexion_m = pose.ankle.knee_flexion_m;
+    plan->toe_off_rad = pose.ankle.toe_off_rad;
+    plan->heel_strike_rad = pose.ankle.heel_strike_rad;
+    return pose.ankle_limited ? (uint32_t)SADDLE_LIMIT_TOE_OFF : 0u;
+}
+
+uint32_t saddle_planner_write(const saddle_planner_t *planner, const saddle_config_t *config,
+                              const saddle_body_t *body, saddle_plan_t *plan)
+{
+    const saddle_cycle_t *cycle = &planner->cycle;
+    const bool standing = planner->shifting || planner->mode == (uint8_t)SADDLE_MODE_STANDING;
+    uint32_t limits = 0;
+    *plan = (saddle_plan_t){.valid = true};
+    plan->mode = planner->mode;
+    plan->support = (uint8_t)cycle->quarter.stance;
+    plan->step_count = cycle->step_count;
+    plan->stride_count = cycle->stride_count;
+    plan->origin_x_nm = cycle->origin_x_nm;
+    if (standing) {
+        write_standing(planner, config, body, plan);
     } else {
-        begin_walk(planner, config, body, command);
+        plan->speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+        plan->step_length_m = 2.0f * cycle->quarter.length_m;
+        plan->step_width_m = cycle->quarter.width_m;
+        limits = write_walking(planner, config, body, plan);
     }
-    write_plan(planner, config, body, plan);
-    const bool held = command->speed_m_s != planner->commanded_speed_m_s ||
-                      command->heel_strike_rad != planner->commanded_heel_strike_rad;
-    return planner->start_limits | (held ? (uint32_t)SADDLE_LIMIT_COMMAND_HELD : 0u);
+    write_events(planner, config, plan);
+    return limits;
 }

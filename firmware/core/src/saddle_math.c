@@ -158,3 +158,10 @@ float saddle_min_jerk(float s)
     const float y = u * u * u * (10.0f + u * (6.0f * u - 15.0f));
     return second_half ? 1.0f - y : y;
 }
+
+float saddle_min_jerk_slope(float s)
+{
+    const float limited = saddle_clamp(s, 0.0f, 1.0f);
+    const float product = limited * (1.0f - limited);
+    return 30.0f * product * product;
+}

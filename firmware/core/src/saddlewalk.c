@@ -3,6 +3,9 @@
 /* Marks a context that saddle_init() has filled. */
 #define INITIALISED 0x5ADD1E00u
 
+/* The largest tick_max_s that is accepted. */
+#define TICK_LIMIT_US 250000u
+
 saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *config)
 {
     if (context == NULL) {
@@ -17,6 +20,7 @@ saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *co
     }
     context->config = *config;
     context->body = saddle_body(config);
+    saddle_planner_reset(&context->planner, config);
     context->initialised = INITIALISED;
     return SADDLE_OK;
 }
@@ -35,17 +39,33 @@ static saddle_status_t judge_call(const saddle_context_t *context, const saddle_
     return SADDLE_OK;
 }
 
-static float elapsed_s(saddle_context_t *context, uint64_t time_us, uint32_t *limits)
+static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t *limits)
 {
-    const uint64_t elapsed_us = context->ticked ? time_us - context->last_time_us : 0u;
-    const float limit_us = context->config.tick_max_s * 1.0e6f;
+    const uint64_t since_us = context->ticked ? time_us - context->last_time_us : 0u;
+    const uint32_t limit_us = (uint32_t)(context->config.tick_max_s * 1.0e6f);
     context->last_time_us = time_us;
     context->ticked = true;
-    if (elapsed_us > UINT32_MAX || (float)(uint32_t)elapsed_us > limit_us) {
+    if (since_us > limit_us) {
         *limits |= (uint32_t)SADDLE_LIMIT_TICK_GAP;
-        return context->config.tick_max_s;
+        context->supervisor.step_open = false; /* what happened in the gap is not known */
+        return limit_us;
     }
-    return (float)(uint32_t)elapsed_us * 1.0e-6f;
+    return (uint32_t)since_us;
+}
+
+/* The feet for the planner: what the supervisor would use of them. */
+static saddle_feet_t measured_feet(const saddle_measurement_t *measurement, uint32_t faults)
+{
+    const uint32_t feet_faults =
+        (uint32_t)SADDLE_FAULT_LEFT_STALE | (uint32_t)SADDLE_FAULT_LEFT_RANGE |
+        (uint32_t)SADDLE_FAULT_RIGHT_STALE | (uint32_t)SADDLE_FAULT_RIGHT_RANGE;
+    const saddle_feet_t feet = {
+        .known = (faults & feet_faults) == 0u,
+        .cop_m = {measurement->foot[SADDLE_LEFT].cop_m, measurement->foot[SADDLE_RIGHT].cop_m},
+        .contact = {measurement->foot[SADDLE_LEFT].contact,
+                    measurement->foot[SADDLE_RIGHT].contact},
+    };
+    return feet;
 }
 
 static saddle_scores_t score_plan(const saddle_context_t *context, const saddle_plan_t *plan)
@@ -77,12 +97,68 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     } else {
         output->faults |= (uint32_t)SADDLE_FAULT_COMMAND;
     }
-    const float dt_s = elapsed_s(context, input->time_us, &output->limits);
+    const uint32_t dt_us = elapsed_us(context, input->time_us, &output->limits);
+    const uint32_t faults = saddle_supervisor_judge(&context->config, &input->measurement);
+    const saddle_feet_t feet = measured_feet(&input->measurement, faults);
     output->limits |= saddle_planner_update(&context->planner, &context->config, &context->body,
-                                            &context->command, dt_s, &output->plan);
+                                            &context->command, &feet, dt_us);
+    output->limits |= saddle_planner_write(&context->planner, &context->config, &context->body,
+                                           &output->plan);
     output->plan_scores = score_plan(context, &output->plan);
     output->faults |= saddle_supervisor_update(&context->supervisor, &context->config,
-                                               &context->body, &input->measurement, dt_s,
-                                               output->plan.speed_m_s, &output->scores);
+                                               &context->body, &input->measurement, faults,
+                                               (float)dt_us * 1.0e-6f, output->plan.speed_m_s,
+                                               &output->scores);
+    return SADDLE_OK;
+}
+
+saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *command)
+{
+    if (context == NULL || command == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    if (context->initialised != INITIALISED) {
+        return SADDLE_ERROR_UNINITIALISED;
+    }
+    if (command->mode != (uint8_t)SADDLE_COMMAND_WALK || !saddle_command_usable(command) ||
+        !(command->speed_m_s > 0.0f)) {
+        return SADDLE_ERROR_COMMAND;
+    }
+    context->command = *command;
+    saddle_planner_join(&context->planner, &context->config, &context->body, command);
+    return SADDLE_OK;
+}
+
+/* Beyond a tick, tick by tick: within the range of fixed point. */
+static void advance_far(saddle_planner_t *planner, const saddle_context_t *context, uint32_t dt_us)
+{
+    uint32_t rest_us = dt_us;
+    while (rest_us > TICK_LIMIT_US) {
+        saddle_planner_advance(planner, &context->config, &context->body, TICK_LIMIT_US);
+        rest_us -= TICK_LIMIT_US;
+    }
+    saddle_planner_advance(planner, &context->config, &context->body, rest_us);
+}
+
+saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
+                               saddle_plan_t *plan)
+{
+    if (plan == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    *plan = (saddle_plan_t){.valid = false};
+    if (context == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    if (context->initialised != INITIALISED) {
+        return SADDLE_ERROR_UNINITIALISED;
+    }
+    if (!context->ticked || time_us < context->last_time_us ||
+        time_us - context->last_time_us > saddle_planner_horizon_us(&context->planner)) {
+        return SADDLE_ERROR_TIME;
+    }
+    saddle_planner_t planner = context->planner;
+    advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
+    saddle_planner_write(&planner, &context->config, &context->body, plan);
     return SADDLE_OK;
 }

@@ -160,21 +160,31 @@ static uint32_t judge_scores(uint32_t known, const saddle_scores_t *scores)
     return faults;
 }
 
+uint32_t saddle_supervisor_judge(const saddle_config_t *config,
+                                 const saddle_measurement_t *measurement)
+{
+    return judge_com(config, measurement) | judge_foot(config, measurement, SADDLE_LEFT) |
+           judge_foot(config, measurement, SADDLE_RIGHT);
+}
+
 uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_config_t *config,
                                   const saddle_body_t *body,
-                                  const saddle_measurement_t *measurement, float dt_s,
-                                  float planned_speed_m_s, saddle_scores_t *scores)
+                                  const saddle_measurement_t *measurement, uint32_t faults,
+                                  float dt_s, float planned_speed_m_s, saddle_scores_t *scores)
 {
-    const uint32_t com_fault = judge_com(config, measurement);
-    const uint32_t left_fault = judge_foot(config, measurement, SADDLE_LEFT);
-    const uint32_t right_fault = judge_foot(config, measurement, SADDLE_RIGHT);
-    const bool feet_known = left_fault == 0u && right_fault == 0u;
+    const bool com_known =
+        (faults & ((uint32_t)SADDLE_FAULT_COM_STALE | (uint32_t)SADDLE_FAULT_COM_RANGE)) == 0u;
+    const bool left_known =
+        (faults & ((uint32_t)SADDLE_FAULT_LEFT_STALE | (uint32_t)SADDLE_FAULT_LEFT_RANGE)) == 0u;
+    const bool right_known =
+        (faults & ((uint32_t)SADDLE_FAULT_RIGHT_STALE | (uint32_t)SADDLE_FAULT_RIGHT_RANGE)) == 0u;
+    const bool feet_known = left_known && right_known;
 
-    const bool left_strike = left_fault == 0u && heel_strike(supervisor, measurement, SADDLE_LEFT);
+    const bool left_strike = left_known && heel_strike(supervisor, measurement, SADDLE_LEFT);
     const bool right_strike =
-        right_fault == 0u && heel_strike(supervisor, measurement, SADDLE_RIGHT);
+        right_known && heel_strike(supervisor, measurement, SADDLE_RIGHT);
     const bool strike = left_strike || right_strike;
-    follow_speed(supervisor, com_fault == 0u, measurement->com.velocity_m_s.x, dt_s, strike);
+    follow_speed(supervisor, com_known, measurement->com.velocity_m_s.x, dt_s, strike);
     if (strike && feet_known) {
         follow_half_step(supervisor, measurement);
     }
@@ -186,10 +196,10 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
         .v_comp_m_s = supervisor->v_comp_known ? supervisor->v_comp_m_s : planned_speed_m_s,
         .half_step_m = supervisor->half_step_m,
         .known = (feet_known ? (uint32_t)SADDLE_KNOWN_FEET : 0u) |
-                 (com_fault == 0u ? (uint32_t)SADDLE_KNOWN_VELOCITY : 0u) |
+                 (com_known ? (uint32_t)SADDLE_KNOWN_VELOCITY : 0u) |
                  (speed_known ? (uint32_t)SADDLE_KNOWN_SPEED : 0u) |
                  (supervisor->half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u),
     };
     *scores = saddle_score_posture(config, body, &posture);
-    return com_fault | left_fault | right_fault | judge_scores(posture.known, scores);
+    return faults | judge_scores(posture.known, scores);
 }

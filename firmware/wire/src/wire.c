@@ -208,9 +208,8 @@ static void encode_feet_plan(const saddle_plan_t *plan, uint8_t counter, saddle_
            .z = RAW(plan_right_z, valid, right_m.z));
     ENCODE(&frames[2], plan_swing, PLAN_SWING, .counter = counter,
            .vx = RAW(plan_swing_vx, valid, plan->swing_velocity_m_s.x),
-           .vz = RAW(plan_swing_vz, valid, plan->swing_velocity_m_s.z),
-           .time_to_heel_strike =
-               RAW(plan_swing_time_to_heel_strike, valid, plan->time_to_heel_strike_s));
+           .vy = RAW(plan_swing_vy, valid, plan->swing_velocity_m_s.y),
+           .vz = RAW(plan_swing_vz, valid, plan->swing_velocity_m_s.z));
 }
 
 static void encode_step_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
@@ -229,6 +228,21 @@ static void encode_step_plan(const saddle_plan_t *plan, uint8_t counter, saddle_
            .theta = RAW(plan_step_theta, valid, plan->theta_rad),
            .step_length = RAW(plan_step_step_length, valid, plan->step_length_m),
            .step_count = (uint16_t)plan->step_count);
+}
+
+static void encode_events_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
+{
+    const bool valid = plan->valid;
+    ENCODE(&frames[0], plan_events, PLAN_EVENTS, .counter = counter, .mode = plan->mode,
+           .time_to_via_point =
+               RAW(plan_events_time_to_via_point, valid, plan->time_to_via_point_s),
+           .time_to_heel_strike =
+               RAW(plan_events_time_to_heel_strike, valid, plan->time_to_heel_strike_s),
+           .time_to_toe_off = RAW(plan_events_time_to_toe_off, valid, plan->time_to_toe_off_s));
+    ENCODE(&frames[1], plan_pitch, PLAN_PITCH, .counter = counter,
+           .left = RAW(plan_pitch_left, valid, plan->foot_pitch_rad[SADDLE_LEFT]),
+           .right = RAW(plan_pitch_right, valid, plan->foot_pitch_rad[SADDLE_RIGHT]),
+           .knee_flexion = RAW(plan_pitch_knee_flexion, valid, plan->knee_flexion_m));
 }
 
 static bool holds(const saddle_scores_t *scores, saddle_valid_t result)
@@ -265,8 +279,9 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
     encode_com_plan(&output->plan, counter, &frames[0]);
     encode_feet_plan(&output->plan, counter, &frames[2]);
     encode_step_plan(&output->plan, counter, &frames[5]);
-    encode_scores(&output->scores, output->faults, counter, &frames[8]);
-    ENCODE(&frames[11], health, HEALTH, .counter = counter, .status = (uint8_t)output->status,
+    encode_events_plan(&output->plan, counter, &frames[8]);
+    encode_scores(&output->scores, output->faults, counter, &frames[10]);
+    ENCODE(&frames[13], health, HEALTH, .counter = counter, .status = (uint8_t)output->status,
            .limits = (uint8_t)output->limits, .wire_version = SADDLE_WIRE_VERSION,
            .late_ticks = limited_u16(health->late_ticks),
            .rejected_frames = limited_u16(health->rejected_frames));

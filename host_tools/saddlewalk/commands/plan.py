@@ -1,13 +1,16 @@
-"""`saddlewalk plan`: a steady walk at constant speed, row by row, from the C core."""
+"""`saddlewalk plan`: a walk row by row from the C core, steady or by a schedule of speeds."""
 
 import argparse
+import functools
 import itertools
 import math
+import operator
 import sys
 from collections.abc import Iterator
 from typing import Any
 
 from saddlewalk.config import ANKLES, add_body_options, load_config
+from saddlewalk.errors import UserError
 from saddlewalk.options import add_gait_options, number_in, whole_number_in
 from saddlewalk.table import Cell, write_table
 
@@ -17,14 +20,38 @@ COLUMNS = (
     "theta_hs_rad s_pend s_jump s_sw mos_com_m mos_xcom_m gravity_x_n gravity_y_n"
 ).split()
 
-LONGEST_TICK_S = 0.08
+SCHEDULE_COLUMNS = (
+    *COLUMNS,
+    *"mode time_to_heel_strike_s time_to_toe_off_s event event_t_s".split(),
+)
+
 SHORTEST_DT_S = 1e-5
 
 
 def add_parser(subparsers: Any) -> None:
-    parser = subparsers.add_parser("plan", help="plan a steady walk as CSV")
+    parser = subparsers.add_parser(
+        "plan",
+        help="plan a walk as CSV",
+        description="Plan a walk as CSV: a steady one that is under way, or one from standing by "
+        "a schedule of speeds. With a schedule, `event` names what came since the row before and "
+        "`event_t_s` says when, finer than the rows; several are separated by a space.",
+    )
     add_gait_options(parser)
-    parser.add_argument("--strides", type=whole_number_in(1, 10**6), default=1, metavar="N")
+    parser.add_argument(
+        "--strides",
+        type=whole_number_in(1, 10**6),
+        metavar="N",
+        help="with --speed (default 1)",
+    )
+    parser.add_argument(
+        "--duration",
+        type=number_in(0, 1e6, "s"),
+        metavar="S",
+        help="with --schedule (default: until it stands again, or 5 s after the last row)",
+    )
+    parser.add_argument(
+        "--picture", metavar="FILE", help="with --schedule: draw the walk, as PNG, SVG or PDF"
+    )
     parser.add_argument("--dt", type=number_in(SHORTEST_DT_S, 1e4, "s"), default=0.08, metavar="S")
     parser.add_argument("--ankle", choices=ANKLES, help="ankle strategy (default erf)")
     add_body_options(parser)
@@ -33,25 +60,90 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    _refuse_mixture(args)
+    return _plan_schedule(args) if args.schedule is not None else _plan_steady(args)
+
+
+def _refuse_mixture(args: argparse.Namespace) -> None:
+    """Raise UserError for an option that has no meaning for this kind of walk."""
+    scheduled = args.schedule is not None
+    if scheduled and args.strides is not None:
+        raise UserError("--strides goes with --speed; with --schedule give --duration")
+    for option in ("duration", "picture"):
+        if not scheduled and getattr(args, option) is not None:
+            raise UserError(f"--{option} goes with --schedule")
+
+
+def _plan_steady(args: argparse.Namespace) -> int:
     from saddlewalk.core import Core, library
 
     outputs = walk(Core(load_config(args, args.ankle)), args.speed, args.hs_angle, args.dt)
     first = next(outputs)
-    _note_limits(args, first[1], library())
+    limits = first[1].limits
+    if limits & library().SADDLE_LIMIT_SPEED:
+        _note(
+            f"--speed {args.speed:g} is not feasible for this body: "
+            f"limited to {first[1].plan.speed_m_s:.4g} m/s"
+        )
+    _note_angles(args, limits)
     plan = first[1].plan
-    duration_s = args.strides * 2.0 * plan.step_length_m / plan.speed_m_s
+    duration_s = (args.strides or 1) * 2.0 * plan.step_length_m / plan.speed_m_s
     further = math.floor(duration_s / args.dt + 1e-9)
     rows = itertools.chain([first], itertools.islice(outputs, further))
     write_table(args.out, COLUMNS, (_row(t_s, output) for t_s, output in rows))
     return 0
 
 
+def _plan_schedule(args: argparse.Namespace) -> int:
+    from saddlewalk import schedule
+    from saddlewalk.core import Core, library
+
+    wishes = schedule.read_schedule(args.schedule)
+    core = Core(load_config(args, args.ankle))
+    walked = list(_until_the_end(args, wishes, core))
+    write_table(args.out, SCHEDULE_COLUMNS, (_schedule_row(instant) for instant in walked))
+    infeasible = library().SADDLE_LIMIT_SPEED
+    limited = {instant.wish for instant in walked if instant.output.limits & infeasible}
+    for wish in sorted(limited, key=lambda wish: wish.line):
+        _note(
+            f"{args.schedule}: line {wish.line}, speed_m_s: {wish.speed_m_s:g} is not feasible "
+            "for this body: limited"
+        )
+    _note_angles(args, functools.reduce(operator.or_, (i.output.limits for i in walked)))
+    if args.picture is not None:
+        from saddlewalk.schedule_picture import draw_schedule
+
+        draw_schedule(args.picture, wishes, walked)
+    return 0
+
+
+def _until_the_end(args: argparse.Namespace, wishes: list[Any], core: Any) -> Iterator[Any]:
+    """The instants of the walk: for --duration, else until it stands or 5 s after the last row."""
+    from saddlewalk import schedule
+
+    last = wishes[-1]
+    until_stand = args.duration is None and last.speed_m_s == 0
+    duration_s = last.from_s + 5.0 if args.duration is None else args.duration
+    for instant in schedule.walk(core, wishes, math.radians(args.hs_angle), args.dt):
+        if not until_stand and instant.t_s > duration_s + 1e-9:
+            return
+        yield instant
+        if (
+            until_stand
+            and instant.wish is last
+            and schedule.mode_of(instant.output.plan) == "standing"
+        ):
+            return
+
+
 def walk(core: Any, speed_m_s: float, hs_angle_deg: float, dt_s: float) -> Iterator[tuple]:
     """Endless (t_s, saddle_output_t) at t = k dt, ticking in between where dt is long."""
     from saddlewalk.core import Command, Measurement
+    from saddlewalk.schedule import LONGEST_TICK_S
 
     command = Command(speed_m_s, math.radians(hs_angle_deg))
     nobody = Measurement()
+    core.join(command)
     ticks_per_row = math.ceil(dt_s / LONGEST_TICK_S)
     yield 0.0, core.tick(0, command, nobody)
     row = 0
@@ -63,24 +155,36 @@ def walk(core: Any, speed_m_s: float, hs_angle_deg: float, dt_s: float) -> Itera
         yield row * dt_s, output
 
 
-def _note_limits(args: argparse.Namespace, output: Any, core: Any) -> None:
-    if output.limits & core.SADDLE_LIMIT_SPEED:
-        print(
-            f"saddlewalk plan: --speed {args.speed:g} is not feasible for this body: "
-            f"limited to {output.plan.speed_m_s:.4g} m/s",
-            file=sys.stderr,
-        )
-    if output.limits & core.SADDLE_LIMIT_HEEL_STRIKE:
-        print(
-            f"saddlewalk plan: --hs-angle {args.hs_angle:g} exceeds heel_strike_max_rad: limited",
-            file=sys.stderr,
-        )
-    if output.limits & core.SADDLE_LIMIT_TOE_OFF:
-        print(
-            "saddlewalk plan: the toe-off angle that this gait asks for is outside the ankle's "
-            "geometry: limited",
-            file=sys.stderr,
-        )
+def _note_angles(args: argparse.Namespace, limits: int) -> None:
+    from saddlewalk.core import library
+
+    if limits & library().SADDLE_LIMIT_HEEL_STRIKE:
+        _note(f"--hs-angle {args.hs_angle:g} exceeds heel_strike_max_rad: limited")
+    if limits & library().SADDLE_LIMIT_TOE_OFF:
+        _note("the toe-off angle that this gait asks for is outside the ankle's geometry: limited")
+
+
+def _note(text: str) -> None:
+    print(f"saddlewalk plan: {text}", file=sys.stderr)
+
+
+def _schedule_row(instant: Any) -> list[Cell]:
+    from saddlewalk.core import TIME_MAX_S, library
+    from saddlewalk.schedule import mode_of
+
+    plan, valid = instant.output.plan, instant.output.plan_scores.valid
+    row = _row(instant.t_s, instant.output)
+    if not valid & library().SADDLE_VALID_STEP:  # before the first step and after the last
+        for name in ("s_pend", "s_jump"):
+            row[COLUMNS.index(name)] = None
+    times_s = (plan.time_to_heel_strike_s, plan.time_to_toe_off_s)
+    return [
+        *row,
+        mode_of(plan),
+        *(time_s if time_s < TIME_MAX_S else None for time_s in times_s),
+        " ".join(event.name for event in instant.events),
+        " ".join(f"{event.t_s:.6f}" for event in instant.events),
+    ]
 
 
 def _row(t_s: float, output: Any) -> list[Cell]:

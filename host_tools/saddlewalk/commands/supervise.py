@@ -35,22 +35,22 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk.core import Core
+    from saddlewalk.core import Command, Core
 
     core = Core(load_config(args))
-    write_table(args.out, SCORE_COLUMNS, _scores(core, args))
+    command = Command(args.speed)
+    if args.speed is not None:
+        core.join(command)
+    write_table(args.out, SCORE_COLUMNS, _scores(core, command, args.source))
     return 0
 
 
-def _scores(core: Any, args: argparse.Namespace) -> Iterator[list[Cell]]:
-    from saddlewalk.core import Command
-
-    command = Command(args.speed)
+def _scores(core: Any, command: Any, source: str) -> Iterator[list[Cell]]:
     start_s = None
-    for line, state in read_series(args.source, STATE_COLUMNS, LONGEST_S):
+    for line, state in read_series(source, STATE_COLUMNS, LONGEST_S):
         t_s = state["t_s"]
         start_s = t_s if start_s is None else start_s
-        measurement = _measurement(args.source, line, state)
+        measurement = _measurement(source, line, state)
         yield _row(t_s, core.tick(round((t_s - start_s) * 1e6), command, measurement))
 
 

@@ -2,8 +2,10 @@
 #ifndef SADDLEWALK_ANKLE_STRATEGY_H
 #define SADDLEWALK_ANKLE_STRATEGY_H
 
+#include <saddlewalk/blend.h>
 #include <saddlewalk/gait_model.h>
 #include <saddlewalk/saddle_types.h>
+#include <stdbool.h>
 
 /** One step-to-step transition. */
 typedef struct {
@@ -16,20 +18,33 @@ typedef struct {
 typedef struct {
     float toe_off_rad, heel_strike_rad; /**< sole to ground */
     float leg_length_m;                 /**< stance leg, [E11] */
+    float knee_flexion_m;               /**< by which the stance leg is shorter than l_p, [E25] */
     float leg_rate_m_s;                 /**< its time derivative */
 } saddle_ankle_state_t;
 
-/** The transition of a steady gait. heel_strike_rad in [0, pi/2]. */
+/** The transition at the saddle via point of a quarter that is walked at speed_m_s > 0.
+ *  heel_strike_rad in [0, pi/2]. */
 saddle_transition_t saddle_transition(const saddle_config_t *config, const saddle_body_t *body,
-                                      const saddle_gait_t *gait, float heel_strike_rad);
+                                      const saddle_quarter_t *quarter, float speed_m_s,
+                                      float heel_strike_rad);
 
-/** The ankles time_s after the nearest saddle via point (negative: before it).
- *  The stance leg is in its toe-off part before the saddle and in its heel-strike part after. */
+/** The ankles time_s after the nearest saddle via point (negative: before it). Before it the
+ *  stance leg is in its toe-off part, after it in its heel-strike part: toe_off_acts. */
 saddle_ankle_state_t saddle_ankle(const saddle_config_t *config, const saddle_body_t *body,
-                                  const saddle_transition_t *transition, float time_s);
+                                  const saddle_transition_t *transition, float time_s,
+                                  bool toe_off_acts);
 
 /** [E14] CoM height and its rate over a stance CoP at `offset_m` horizontally from it. */
 void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m,
                        saddle_vec2_t velocity_m_s, float *height_m, float *height_rate_m_s);
+
+/** [E24] CoM height of the cycloid model at a phase angle, and dz/dx. */
+saddle_sample_t saddle_cycloid(const saddle_body_t *body, const saddle_quarter_t *quarter,
+                               float angle_rad);
+
+/** [E25] The ankle angle that gives the stance leg its length: of toe-off or of heel strike. An
+ *  angle beyond the geometry is limited, which *limited tells. */
+saddle_ankle_state_t saddle_ankle_for_leg(const saddle_config_t *config, const saddle_body_t *body,
+                                          float leg_length_m, bool toe_off_acts, bool *limited);
 
 #endif

@@ -1,19 +1,15 @@
-/** The CoM in the transverse plane at constant speed, relative to the stance foot. */
+/** The CoM in the transverse plane over one quarter of the stride, relative to the stance foot. */
 #ifndef SADDLEWALK_COM_PATH_H
 #define SADDLEWALK_COM_PATH_H
 
+#include <saddlewalk/blend.h>
 #include <saddlewalk/gait_model.h>
-#include <saddlewalk/saddle_types.h>
 
-/** x from the stance CoP, y from the walking line. */
-typedef struct {
-    saddle_vec2_t position_m;
-    saddle_vec2_t velocity_m_s;
-} saddle_com_path_t;
+/** Phase angle in [-pi/2, pi/2] of the place x_m from the stance CoP: 0 at the foot via point,
+ *  +-pi/2 at the saddle via points. |x_m| <= length_m. */
+float saddle_quarter_angle_rad(const saddle_quarter_t *quarter, float x_m);
 
-/** [E7] step_phase_rad in [-pi/2, pi/2]: 0 beside the stance foot (foot via point), +-pi/2 at the
- *  saddle via points. One sine, one cosine. */
-saddle_com_path_t saddle_com_path(const saddle_gait_t *gait, saddle_side_t stance,
-                                  float step_phase_rad);
+/** [E7] CoM y from the stance CoP, and dy/dx. */
+saddle_sample_t saddle_com_lateral(const saddle_quarter_t *quarter, float angle_rad);
 
 #endif

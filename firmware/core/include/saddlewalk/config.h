@@ -8,6 +8,7 @@
 typedef enum {
     SADDLE_ANKLE_ERF = 0,   /**< the paper's ankle strategy, [E12]; z jumps at heel strike */
     SADDLE_ANKLE_RIGID = 1, /**< the inverted pendulum: the leg keeps its length */
+    SADDLE_ANKLE_CYCLOID = 2, /**< smooth z with the human amplitude, [E24]; for driving joints */
     SADDLE_ANKLE_COUNT
 } saddle_ankle_t;
 
@@ -30,6 +31,12 @@ typedef struct {
     float peak_speed_m_s;             /**< where reach and XCoM limit meet, [E6] */
     float ankle_time_constant_s;      /**< of the erf profile, [E12] */
     float heel_strike_max_rad;        /**< a larger commanded angle is limited */
+    float acceleration_m_s2;          /**< largest change of the walking speed */
+    float shift_time_s;               /**< of the weight to the first stance leg, and back */
+    float step_length_factor_left;    /**< steps that the left foot makes; 1: symmetric, [E4] */
+    float step_length_factor_right;
+    float step_width_factor_left;     /**< left foot to the walking line; 1: symmetric, [E3] */
+    float step_width_factor_right;
     float swing_clearance_m;          /**< height of the swing foot at mid-swing, [E10] */
     float tick_max_s;                 /**< the plan advances by no more than this in one tick */
     float measurement_max_age_s;      /**< older measurements are not used */

@@ -2,19 +2,30 @@
 #ifndef SADDLEWALK_FOOT_SWING_H
 #define SADDLEWALK_FOOT_SWING_H
 
+#include <saddlewalk/blend.h>
 #include <saddlewalk/saddle_types.h>
 
+/** One swing, relative to the stance CoP. Progress runs from 0 at one saddle via point over 1/2
+ *  beside the stance foot to 1 at the next; a first or last half swing is in the air for half. */
 typedef struct {
-    saddle_vec3_t position_m; /**< CoP; x and y in the frame of the arguments */
-    saddle_vec3_t velocity_m_s;
+    float lift_progress, land_progress; /**< in the air between them */
+    float line_y_m;                     /**< where it lands, from the stance CoP */
+    saddle_vec2_t offset_m;             /**< from the line to where it lifted off: fades out */
+    float clearance_m;
 } saddle_swing_t;
 
-/** Transverse motion and height, [E9] [E10].
- *  stance_m and com in one frame; swing_y_m is the line on which the swing foot travels;
- *  com.y must differ from stance_m.y. progress in [0, 1] from toe-off to heel strike, and its
- *  rate progress_rate_hz. */
-saddle_swing_t saddle_foot_swing(saddle_vec2_t stance_m, saddle_vec2_t com_m,
-                                 saddle_vec2_t com_velocity_m_s, float swing_y_m, float progress,
-                                 float progress_rate_hz, float clearance_m);
+typedef struct {
+    saddle_vec3_t position_m;   /**< CoP, from the stance CoP; z from the ground */
+    saddle_vec3_t velocity_m_s;
+} saddle_swing_state_t;
+
+/** [E9] x of the point where the line from the stance CoP through the reference CoM meets
+ *  y = line_y_m, and dx/d(CoM x). x_m is the CoM's, lateral its reference. */
+saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle_sample_t lateral);
+
+/** [E9] [E10] The foot at a progress; x_m, lateral as above; speed_m_s that of the CoM and
+ *  rate_hz that of the progress. */
+saddle_swing_state_t saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
+                                       saddle_sample_t lateral, float speed_m_s, float rate_hz);
 
 #endif

@@ -3,6 +3,8 @@
 #define SADDLEWALK_GAIT_MODEL_H
 
 #include <saddlewalk/config.h>
+#include <saddlewalk/saddle_fixed.h>
+#include <saddlewalk/saddle_types.h>
 #include <stdbool.h>
 
 /** A feasible speed stays this factor under the ceiling when it is limited. */
@@ -16,15 +18,15 @@ typedef struct {
     float speed_ceiling_m_s;     /**< no speed at or above it is feasible, [E6] */
 } saddle_body_t;
 
-/** The regressions at one speed. */
+/** One quarter of the stride: from beside the stance foot (foot via point) to midway between the
+ *  feet (saddle via point), or back. */
 typedef struct {
-    float speed_m_s;
-    float step_length_m;        /**< [E4] */
-    float step_width_m;         /**< [E3] */
-    float lateral_amplitude_m;  /**< A_y, [E7] */
-    float vertical_amplitude_m; /**< delta Z, peak to peak, [E5] */
-    float cadence_hz;           /**< w_0, steps per second */
-} saddle_gait_t;
+    saddle_side_t stance;
+    float length_m;    /**< along x; half a step in steady walking */
+    float width_m;     /**< between the lines of the two feet, > 0 */
+    float amplitude_m; /**< A_y, [E7] */
+    float vertical_m;  /**< delta Z, peak to peak, [E5] */
+} saddle_quarter_t;
 
 /** Half step lengths that bound the step scores at one speed, [E6]. */
 typedef struct {
@@ -37,14 +39,22 @@ typedef struct {
 /** config has passed saddle_config_check(). */
 saddle_body_t saddle_body(const saddle_config_t *config);
 
-/** speed_m_s finite and > 0. */
-saddle_gait_t saddle_gait(const saddle_config_t *config, float speed_m_s);
-
 /** [E3], defined at every speed. */
 float saddle_step_width_m(const saddle_config_t *config, float speed_m_s);
 
 /** Any finite speed; for speed <= 0 not feasible. */
 saddle_step_bounds_t saddle_step_bounds(const saddle_config_t *config, const saddle_body_t *body,
                                         float speed_m_s);
+
+/** [E4] Half the step that a foot makes, exact in the speed; speed >= 0. */
+saddle_fixed_t saddle_half_step(const saddle_config_t *config, saddle_side_t foot,
+                                saddle_fixed_t speed);
+
+/** [E3] Where a foot lands beside the walking line: y, positive for the left foot. */
+float saddle_landing_y_m(const saddle_config_t *config, saddle_side_t foot, float speed_m_s);
+
+/** Amplitudes at a speed for a quarter of the given shape; width_m below 2 cm counts as 2 cm. */
+saddle_quarter_t saddle_quarter(const saddle_config_t *config, saddle_side_t stance, float length_m,
+                                float width_m, float speed_m_s);
 
 #endif

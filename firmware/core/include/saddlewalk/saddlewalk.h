@@ -25,8 +25,9 @@ typedef enum {
     SADDLE_ERROR_NULL = 1,          /**< an argument is NULL */
     SADDLE_ERROR_CONFIG = 2,        /**< saddle_config_check() names the field */
     SADDLE_ERROR_UNINITIALISED = 3, /**< saddle_init() has not succeeded on this context */
-    SADDLE_ERROR_TIME = 4           /**< time_us went backwards: no plan, no scores, state kept,
+    SADDLE_ERROR_TIME = 4,          /**< time_us went backwards: no plan, no scores, state kept,
                                          until it has caught up or saddle_init() starts over */
+    SADDLE_ERROR_COMMAND = 5        /**< saddle_join() needs a walk with a speed > 0 */
 } saddle_status_t;
 
 typedef struct {
@@ -66,5 +67,16 @@ saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *co
  *  time has passed. No loops over data: the cost hardly varies. The three must not overlap. */
 saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
                             saddle_output_t *output);
+
+/** Plan as if a steady walk at the commanded speed were under way, at the left foot via point
+ *  (theta = 0): what the paper plans. The next tick goes on from there; give it the same command.
+ *  Without this call a walk begins from standing. */
+saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *command);
+
+/** The plan at time_us, from the last tick's time to the end of the next step (some 100 ms more
+ *  while standing), under the command of the last tick; for a faster joint controller. Does not
+ *  touch the context. SADDLE_ERROR_TIME, and a plan that is not valid, outside that span. */
+saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
+                               saddle_plan_t *plan);
 
 #endif

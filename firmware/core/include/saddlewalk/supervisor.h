@@ -93,12 +93,16 @@ typedef struct {
 saddle_scores_t saddle_score_posture(const saddle_config_t *config, const saddle_body_t *body,
                                      const saddle_posture_t *posture);
 
-/** Judge the measurement (age limit, finite, humanly possible), follow the steps, and score the
- *  posture in the frame of the CoM. planned_speed_m_s stands in for v_comp until a step is
- *  complete. Returns saddle_fault_t bits. */
+/** Judge a measurement: age limit, finite, humanly possible. Returns saddle_fault_t bits. */
+uint32_t saddle_supervisor_judge(const saddle_config_t *config,
+                                 const saddle_measurement_t *measurement);
+
+/** Follow the steps and score the posture in the frame of the CoM. faults: what
+ *  saddle_supervisor_judge() said. planned_speed_m_s stands in for v_comp until a step is complete.
+ *  Returns the faults and those of the scores. */
 uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_config_t *config,
                                   const saddle_body_t *body,
-                                  const saddle_measurement_t *measurement, float dt_s,
-                                  float planned_speed_m_s, saddle_scores_t *scores);
+                                  const saddle_measurement_t *measurement, uint32_t faults,
+                                  float dt_s, float planned_speed_m_s, saddle_scores_t *scores);
 
 #endif

@@ -1,0 +1,77 @@
+/** [E23] The gait cycle: quarter after quarter, driven by the way of the CoM, so that any change of
+ *  speed or of the feet meets it without a jump. */
+#ifndef SADDLEWALK_GAIT_CYCLE_H
+#define SADDLEWALK_GAIT_CYCLE_H
+
+#include <saddlewalk/ankle_strategy.h>
+#include <saddlewalk/blend.h>
+#include <saddlewalk/foot_swing.h>
+#include <saddlewalk/gait_model.h>
+#include <saddlewalk/saddle_fixed.h>
+#include <saddlewalk/speed_profile.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** State. Every length is measured from the stance CoP, y from the walking line. */
+typedef struct {
+    saddle_speed_profile_t profile;
+    saddle_fixed_t position;      /**< CoM x, in [-quarter, quarter] */
+    saddle_fixed_t quarter_length;
+    saddle_quarter_t quarter;
+    uint8_t phase;                /**< 0 to 3; even: towards the saddle via point */
+    uint32_t step_count;          /**< changes of the stance foot */
+    uint32_t stride_count;        /**< times that phase 0 was entered again */
+    int64_t origin_x_nm;          /**< way to the stance foot */
+    float stance_y_m;
+    saddle_blend_t lateral;       /**< mismatch of CoM y */
+    saddle_blend_t vertical;      /**< mismatch of CoM z, cycloid only */
+    saddle_swing_t swing;
+    float lift_pitch_rad;         /**< of the swing foot when it lifted off */
+    float heel_strike_rad;        /**< of the last heel strike */
+    float next_heel_strike_rad;   /**< of the next one */
+    saddle_vec2_t last_step_m;    /**< from the old stance foot to the new one */
+    bool last_swing;              /**< the running step ends beside the stance foot: a stop */
+} saddle_cycle_t;
+
+/** What a cycle says at one instant, from the stance CoP; y from there too. */
+typedef struct {
+    float progress;               /**< of the quarter, [0, 1] */
+    saddle_vec3_t com_m, com_velocity_m_s;
+    saddle_swing_state_t swing;
+    saddle_ankle_state_t ankle;
+    float stance_pitch_rad, swing_pitch_rad; /**< sole to ground, positive heel up */
+    bool ankle_limited;
+} saddle_pose_t;
+
+/** Where a walk begins. */
+typedef struct {
+    uint8_t phase;            /**< 0 or 2: CoM beside the stance foot; 1 or 3: midway to it */
+    float stance_y_m;
+    saddle_vec2_t other_m;    /**< the other foot, from the stance CoP */
+    float com_y_m, com_z_m;   /**< from the stance CoP; z from the ground */
+    saddle_fixed_t speed;
+    bool under_way;           /**< the other foot is in mid-swing: a steady walk is joined */
+} saddle_cycle_start_t;
+
+/** Set up everything but the profile's target and rate and the heel-strike angles. */
+void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_config_t *config,
+                        const saddle_body_t *body, const saddle_cycle_start_t *start);
+
+/** Walk on for dt_us. Returns the microseconds left when a last swing ended with zero speed beside
+ *  the stance foot; 0 while it walks on. At most four via points are passed. */
+uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_config_t *config,
+                              const saddle_body_t *body, float heel_strike_rad, uint32_t dt_us,
+                              bool *arrived);
+
+/** Take over a landing: the step that the stance foot really made. False, and nothing changes, if
+ *  it is too late in the step or the foot lies where no plan can go on from. */
+bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
+                       const saddle_body_t *body, saddle_vec2_t step_m);
+
+/** Way to the end of the running quarter. */
+float saddle_cycle_way_to_via_point_m(const saddle_cycle_t *cycle);
+
+saddle_pose_t saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config_t *config,
+                                const saddle_body_t *body);
+
+#endif

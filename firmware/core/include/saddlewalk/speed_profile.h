@@ -1,0 +1,25 @@
+/** [E23] Motion along x: the speed goes to its target at a constant rate and stays there. */
+#ifndef SADDLEWALK_SPEED_PROFILE_H
+#define SADDLEWALK_SPEED_PROFILE_H
+
+#include <saddlewalk/saddle_fixed.h>
+
+/** Longest time that is predicted; what never comes is said to come then. */
+#define SADDLE_TIME_MAX_S 1000.0f
+
+typedef struct {
+    saddle_fixed_t speed;  /**< now, >= 0 */
+    saddle_fixed_t target; /**< >= 0 */
+    float rate_m_s2;       /**< >= 0, magnitude */
+} saddle_speed_profile_t;
+
+/** Advance by dt_us; returns the way. Exact at constant speed, else to about 1e-10 m. */
+saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t dt_us);
+
+/** The speed after a further way_m >= 0. */
+saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile, float way_m);
+
+/** Seconds until a further way_m >= 0 is covered, at most SADDLE_TIME_MAX_S. */
+float saddle_profile_time_s(const saddle_speed_profile_t *profile, float way_m);
+
+#endif

@@ -1,0 +1,116 @@
+"""A schedule of walking speeds, and the walk from standing that obeys it.
+
+A schedule is a CSV file with the columns `t_s` (from 0, increasing) and `speed_m_s` (0: stand):
+each speed is wanted from its time on.
+"""
+
+import math
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from saddlewalk.core import Command, Core, Measurement, ffi
+from saddlewalk.errors import UserError
+from saddlewalk.table import read_series
+
+LONGEST_TICK_S = 0.08
+LONGEST_S = 1e6
+_SAME_TIME_S = 1e-9
+_SIDES = ("left", "right")
+
+
+@dataclass(frozen=True)
+class Wish:
+    """One row of a schedule."""
+
+    line: int
+    from_s: float
+    speed_m_s: float
+
+
+@dataclass(frozen=True)
+class Event:
+    """`heel_strike_left`, `toe_off_right`, ...: t_s is finer than the ticks."""
+
+    name: str
+    t_s: float
+
+
+@dataclass(frozen=True)
+class Instant:
+    """The walk at t_s: the core's saddle_output_t, and the events since the instant before."""
+
+    t_s: float
+    output: Any
+    wish: Wish
+    events: tuple[Event, ...]
+
+
+def read_schedule(source: str) -> list[Wish]:
+    """Raises UserError naming the file, the line and the column that is wrong."""
+    wishes: list[Wish] = []
+    for line, cells in read_series(source, ("t_s", "speed_m_s"), LONGEST_S):
+        t_s, speed_m_s = cells["t_s"], cells["speed_m_s"]
+        if not wishes and t_s != 0:
+            raise UserError(f"{source}: line {line}, t_s: {t_s:g} must be 0: where the walk begins")
+        if not 0 <= speed_m_s < math.inf:
+            raise UserError(
+                f"{source}: line {line}, speed_m_s: {speed_m_s:g} must be 0 or more, finite"
+            )
+        wishes.append(Wish(line, t_s, speed_m_s))
+    if not wishes:
+        raise UserError(f"{source}: no rows: give at least 0 in t_s and a speed_m_s")
+    return wishes
+
+
+def walk(core: Core, wishes: list[Wish], heel_strike_rad: float, dt_s: float) -> Iterator[Instant]:
+    """Endless, from standing, at t = k dt; ticks in between where dt is long."""
+    starts_s = [wish.from_s for wish in wishes]
+    ticks_per_row = math.ceil(dt_s / LONGEST_TICK_S - _SAME_TIME_S)
+    tick_s = dt_s / ticks_per_row
+    before, events, tick = None, [], 0
+    while True:
+        t_s = tick * tick_s
+        wish = wishes[bisect_right(starts_s, t_s + _SAME_TIME_S) - 1]
+        command = Command(wish.speed_m_s, heel_strike_rad)
+        output = core.tick(round(t_s * 1e6), command, Measurement())
+        if before is not None:
+            since_s = t_s - tick_s
+            events += [
+                Event(name, since_s + min(after_s, tick_s))
+                for name, after_s in _events(before.plan, output.plan)
+            ]
+        if tick % ticks_per_row == 0:
+            yield Instant(tick // ticks_per_row * dt_s, output, wish, tuple(events))
+            events = []
+        before, tick = output, tick + 1
+
+
+def mode_of(plan: Any) -> str:
+    """`standing`, `starting`, `walking` or `stopping`."""
+    return ffi().typeof("saddle_mode_t").elements[plan.mode].removeprefix("SADDLE_MODE_").lower()
+
+
+def _events(before: Any, after: Any) -> list[tuple[str, float]]:
+    """Events between two plans a tick apart, with the time to them that the first foretells."""
+    swung, swings = _swing_foot(before), _swing_foot(after)
+    stepped_on = (mode_of(before), mode_of(after)) == ("stopping", "starting")
+    changed = swings != swung or stepped_on
+    events = []
+    if swung and not _has_struck(before) and (changed or _has_struck(after)):
+        strike_s = min(before.time_to_heel_strike_s, before.time_to_via_point_s)
+        events.append((f"heel_strike_{swung}", strike_s))
+    if swings and changed:
+        events.append((f"toe_off_{swings}", before.time_to_via_point_s))
+    return events
+
+
+def _swing_foot(plan: Any) -> str | None:
+    """None while both feet carry."""
+    return _SIDES[1 - plan.support] if plan.step_length_m > 0 else None
+
+
+def _has_struck(plan: Any) -> bool:
+    """The swing foot's heel is on the ground, and its CoP not yet."""
+    return plan.time_to_heel_strike_s == 0
