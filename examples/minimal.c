@@ -9,7 +9,7 @@ int main(void)
     if (saddle_init(&walker, &config) != SADDLE_OK) {
         return 1;
     }
-    for (input.time_us = 0; input.time_us < 1200000; input.time_us += 80000) {
+    for (input.time_us = 0; input.time_us < 4000000; input.time_us += 80000) {
         saddle_output_t output; /* input.measurement: your sensors; here the feet, standing */
         input.measurement.foot[SADDLE_LEFT].cop_m = (saddle_vec2_t){0.0f, 0.1f};
         input.measurement.foot[SADDLE_RIGHT].cop_m = (saddle_vec2_t){0.0f, -0.1f};
