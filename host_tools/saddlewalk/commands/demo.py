@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.commands.emulate import (
     add_walk_options,
-    command_of,
     events_printer,
     push_text,
+    schedule_of,
+    speeds_of,
     summary,
     wearer_of,
 )
@@ -24,7 +25,9 @@ if TYPE_CHECKING:
     from saddlewalk.exoskeleton import Exoskeleton
     from saddlewalk.recorder import Recorder
 
-PUSH_TIME_S = 8
+SPEEDS = [(0.0, 0.0), (1.0, 0.8), (7.0, 1.2), (16.0, 0.0)]
+DURATION_S = 22.0
+PUSH_TIME_S = 12
 PUSH = f"8@{PUSH_TIME_S}:90"
 REFRESH_S = 0.2
 LINE_S = 2.0
@@ -41,7 +44,10 @@ def add_parser(subparsers: Any) -> None:
         metavar="FOLDER",
         help="for the picture and the logs (default out/demo)",
     )
-    add_walk_options(parser, clock="realtime", pushes=(PUSH,))
+    schedule = ", ".join(f"{speed_m_s:g} from {from_s:g} s" for from_s, speed_m_s in SPEEDS)
+    add_walk_options(
+        parser, clock="realtime", pushes=(PUSH,), duration_s=DURATION_S, schedule=schedule
+    )
     parser.set_defaults(run=run)
 
 
@@ -57,6 +63,7 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.recorder import Recorder
 
     wearer = wearer_of(args, Noise())
+    speeds = speeds_of(args, SPEEDS)
     host_options = [f"--can={args.can}", f"--clock={args.clock}"]
     host_options += [f"--lcm={args.lcm}"] if args.lcm else []
     with open_bus(args.can) as bus:
@@ -65,9 +72,11 @@ def run(args: argparse.Namespace) -> int:
             print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
             with _display(lcm) as display:
                 observers = [recorder, events_printer(wearer), display]
-                exoskeleton = Exoskeleton(bus, wearer, command_of(args), lcm, observers)
+                schedule = schedule_of(args, speeds)
+                exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers)
                 exoskeleton.run(args.clock, args.duration)
-    return _finish(args.out, wearer, exoskeleton, recorder)
+    to_stand = schedule(args.duration).speed_m_s == 0
+    return _finish(args.out, wearer, exoskeleton, recorder, to_stand)
 
 
 def _open_lcm(url: str | None) -> Any:
@@ -128,7 +137,11 @@ def _display(lcm: Any) -> Iterator[Any]:
 
 
 def _finish(
-    folder: Path, wearer: "Wearer", exoskeleton: "Exoskeleton", recorder: "Recorder"
+    folder: Path,
+    wearer: "Wearer",
+    exoskeleton: "Exoskeleton",
+    recorder: "Recorder",
+    to_stand: bool,
 ) -> int:
     """Draw the picture, read everything again, tell; 0 only if the walk was sound."""
     from saddlewalk.pictures import draw_walk
@@ -136,12 +149,23 @@ def _finish(
     picture = folder / "walk.png"
     draw_walk(recorder.csv_path, picture, wearer.pushes)
     checks = _checks(wearer, exoskeleton, recorder)
+    if to_stand:
+        checks.insert(1, _standing(exoskeleton))
     print(summary(wearer, exoskeleton))
     for good, words in checks:
         print(f"  {'ok ' if good else 'BAD'}  {words}")
     for path in (picture, recorder.csv_path, recorder.can_path, recorder.lcm_path):
         print(f"  {path}  {path.stat().st_size / 1024:.0f} KiB")
     return 0 if all(good for good, _ in checks) else 1
+
+
+def _standing(exoskeleton: "Exoskeleton") -> tuple[bool, str]:
+    from saddlewalk.emulator import MODES, STANDING
+
+    if exoskeleton.mode == STANDING:
+        return True, "stands at the end"
+    last = "without a plan" if exoskeleton.mode is None else MODES[exoskeleton.mode]
+    return False, f"is {last} at the end, not standing"
 
 
 def _checks(
