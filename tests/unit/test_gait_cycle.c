@@ -59,6 +59,7 @@ static void test_walk_begins_beside_or_midway_with_both_feet_on_the_ground(void)
         TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, at.swing.position_m.z);
         TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, at.progress);
         ASSERT_SAME_FLOAT(midway ? 0.0f : 0.5f, cycle.swing.lift_progress);
+        TEST_ASSERT_DOUBLE_WITHIN(0.0, midway ? 0.5 : 0.0, cycle.last_step_m.x);
     }
 }
 
@@ -205,6 +206,69 @@ static void test_landings_that_are_refused_change_nothing(void)
     TEST_ASSERT_FALSE(land_at(0.0f, 0.0f)); /* no landing yet */
 }
 
+static void test_landing_far_beyond_a_short_step_or_the_leg_is_refused(void)
+{
+    bool arrived;
+    begin(0, 0.1f, true); /* quarters of 0.153 m */
+    while (cycle.phase == 0u) {
+        advance(1000, &arrived);
+    }
+    TEST_ASSERT_FALSE(land_at(0.16f, 0.0f));
+    TEST_ASSERT_TRUE(land_at(0.14f, 0.0f));
+
+    config.body_height_m = 1.2f; /* 0.8 l_p^2 = 0.374 m^2 */
+    config.peak_speed_m_s = 3.9f;
+    body = saddle_body(&config);
+    walk_to_landing(false, 0);
+    TEST_ASSERT_FALSE(land_at(0.19f, -0.30f)); /* CoM 0.50 m behind, 0.37 m beside */
+    TEST_ASSERT_TRUE(land_at(0.14f, -0.30f));
+}
+
+static void test_swing_goes_on_from_where_it_is_when_a_late_landing_is_taken_over(void)
+{
+    walk_to_landing(false, 120000);
+    const saddle_pose_t before = pose();
+    TEST_ASSERT_TRUE(land_at(0.05f, -0.03f));
+    const saddle_pose_t after = pose();
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, (double)before.swing.position_m.x - 0.05,
+                              after.swing.position_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, (double)before.swing.position_m.y + 0.03,
+                              after.swing.position_m.y);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, (double)before.com_m.x - 0.05, after.com_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, (double)before.com_m.y + 0.03, after.com_m.y);
+}
+
+static double next_line_after(float dy)
+{
+    bool arrived;
+    walk_to_landing(false, 0);
+    TEST_ASSERT_TRUE(land_at(0.0f, dy));
+    const uint32_t steps = cycle.step_count;
+    const float stance_y = cycle.stance_y_m;
+    while (cycle.step_count == steps) {
+        advance(1000, &arrived);
+    }
+    return (double)cycle.stance_y_m - (double)stance_y;
+}
+
+static void test_next_line_is_between_half_and_twice_a_step_width(void)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 2.0 * 0.1328, next_line_after(-0.30f));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.5 * 0.1328, next_line_after(0.11f));
+}
+
+static void test_heel_strike_angle_waits_for_the_heel_strike_after_the_next(void)
+{
+    bool arrived;
+    begin(0, 1.0f, true);
+    cycle.next_heel_strike_rad = 0.2f;
+    while (cycle.phase == 0u) {
+        advance(1000, &arrived);
+    }
+    ASSERT_SAME_FLOAT(0.2f, cycle.heel_strike_rad);
+    ASSERT_SAME_FLOAT(0.1f, cycle.next_heel_strike_rad);
+}
+
 /* The new stance foot keeps its misplaced line; the next one is back beside the walking line. */
 static void test_next_step_starts_from_the_foot_that_is_there(void)
 {
@@ -233,6 +297,10 @@ int main(void)
     RUN_TEST(test_last_swing_comes_to_rest_beside_the_stance_foot);
     RUN_TEST(test_last_swing_that_has_lost_its_speed_has_arrived);
     RUN_TEST(test_landings_that_are_refused_change_nothing);
+    RUN_TEST(test_landing_far_beyond_a_short_step_or_the_leg_is_refused);
+    RUN_TEST(test_swing_goes_on_from_where_it_is_when_a_late_landing_is_taken_over);
+    RUN_TEST(test_next_line_is_between_half_and_twice_a_step_width);
+    RUN_TEST(test_heel_strike_angle_waits_for_the_heel_strike_after_the_next);
     RUN_TEST(test_next_step_starts_from_the_foot_that_is_there);
     return UNITY_END();
 }

@@ -391,6 +391,62 @@ static void test_command_at_any_moment_is_obeyed_in_the_end(void)
     TEST_ASSERT_GREATER_THAN_INT(300, braked);
 }
 
+/* Before and after the last lift-off, while shifting: 60 moments of a stop. */
+static void test_restart_while_stopping_is_smooth(void)
+{
+    config.ankle = SADDLE_ANKLE_CYCLOID;
+    for (int moment = 0; moment < 60; moment++) {
+        join(0.9f);
+        command.speed_m_s = 0.0f;
+        for (int k = 0; k < 70 * moment; k++) {
+            smooth_millisecond(true);
+        }
+        command.speed_m_s = 0.9f;
+        for (int k = 0; k < 4000; k++) {
+            smooth_millisecond(true);
+        }
+        TEST_ASSERT_TRUE(plan.mode == (uint8_t)SADDLE_MODE_WALKING ||
+                         plan.mode == (uint8_t)SADDLE_MODE_STARTING);
+    }
+}
+
+static void test_stop_of_a_slow_walk_stays_slow(void)
+{
+    static const float accelerations[] = {0.5f, 5.0f};
+    for (size_t i = 0; i < COUNT_OF(accelerations); i++) {
+        config.acceleration_m_s2 = accelerations[i];
+        join(0.05f);
+        command.mode = SADDLE_COMMAND_STAND;
+        while (plan.mode != (uint8_t)SADDLE_MODE_STANDING) {
+            tick(80000);
+            TEST_ASSERT_TRUE(plan.speed_m_s < 0.3001f);
+        }
+    }
+    config.half_step_intercept_m = 0.46f;
+    join(0.05f);
+    const double ceiling = (double)body.speed_ceiling_m_s;
+    TEST_ASSERT_TRUE(ceiling < 0.2);
+    command.mode = SADDLE_COMMAND_STAND;
+    while (plan.mode != (uint8_t)SADDLE_MODE_STANDING) {
+        tick(80000);
+        TEST_ASSERT_TRUE((double)plan.speed_m_s < ceiling);
+    }
+}
+
+static void test_ticks_of_any_length_start_alike(void)
+{
+    static const uint32_t ticks[] = {1000, 70000, 80000, 200000};
+    for (size_t i = 0; i < COUNT_OF(ticks); i++) {
+        stand(1.0f);
+        tick(0);
+        for (uint32_t t = 0; t < 2800000u; t += ticks[i]) {
+            tick(ticks[i]);
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0, plan.speed_m_s);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-6, 1.0, absolute((double)plan.com_m.x)); /* 2 s at 0.5 m/s^2 */
+    }
+}
+
 static void test_stop_while_starting(void)
 {
     stand(1.2f);
@@ -471,6 +527,20 @@ static void test_measured_feet_give_the_nearest_phase(void)
             smooth_millisecond(false);
         }
     }
+}
+
+/* A landing that was never measured is not taken for the first stance foot of the next walk. */
+static void test_start_after_an_unmeasured_walk_takes_no_old_landing(void)
+{
+    join(0.5f);
+    command.mode = SADDLE_COMMAND_STAND;
+    time_to_stand(80000);
+    command = (saddle_command_t){SADDLE_COMMAND_WALK, 1.0f, 0.1f};
+    measure(0.2f, 0.1f, -0.1f, -0.1f);
+    for (int k = 0; k < 14; k++) {
+        TEST_ASSERT_EQUAL_HEX32(0, tick(80000));
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.1, plan.foot_m[SADDLE_LEFT].y);
 }
 
 static void test_feet_that_no_walk_can_start_from_are_said(void)
@@ -720,7 +790,11 @@ int main(void)
     RUN_TEST(test_start_change_and_stop_are_smooth_in_every_ankle);
     RUN_TEST(test_stop_at_any_moment_ends_side_by_side);
     RUN_TEST(test_command_at_any_moment_is_obeyed_in_the_end);
+    RUN_TEST(test_restart_while_stopping_is_smooth);
+    RUN_TEST(test_stop_of_a_slow_walk_stays_slow);
+    RUN_TEST(test_ticks_of_any_length_start_alike);
     RUN_TEST(test_stop_while_starting);
+    RUN_TEST(test_start_after_an_unmeasured_walk_takes_no_old_landing);
     RUN_TEST(test_start_stands_then_shifts_then_steps);
     RUN_TEST(test_measured_feet_give_the_nearest_phase);
     RUN_TEST(test_feet_that_no_walk_can_start_from_are_said);
