@@ -7,7 +7,7 @@ landing by the rest (stepping strategy).
 
 Points of the transverse plane are complex numbers, x forward + 1j * y to the left, in metres: a
 step of 1 ms in plain floats is ten times faster than in arrays. World frame: x from the start,
-y from the walking line, z from the ground.
+y from the first walking line, z from the ground.
 """
 
 import math
@@ -18,7 +18,13 @@ import numpy as np
 
 GRAVITY_M_S2 = 9.80665
 STEP_S = 1e-3
+STANCE_M = 0.11  # from the middle to each foot of a wearer who stands and waits
 LEFT, RIGHT = 0, 1
+STANDING, STARTING, WALKING, STOPPING = range(4)  # saddle_mode_t
+MODES = ("standing", "starting", "walking", "stopping")
+SPEED_MIN_M_S = 0.01  # slower steps last as long as if so fast
+REST_SHARE = 1 - 2 / math.pi  # of the way to the middle, from the foot over which a walk ends
+FORESIGHT_S = 1.0  # errors that grow for longer are beyond any step
 
 
 @dataclass(frozen=True)
@@ -37,10 +43,11 @@ class Body:
     double_support: float = 0.16  # share of a step after heel strike with both feet loaded
     heel_m: float = -0.02  # where the CoP of a steady walk enters the foot, from its middle
     toe_m: float = 0.08  # and where it leaves
+    inner_m: float = 0.02  # the CoP of a first or last swing, from the middle to the other foot
     cop_gain: float = 1.5  # XCoM errors shrink at cop_gain * natural frequency
     cop_lag_s: float = 0.03
     foot_lag_s: float = 0.03
-    ankle_band_m: complex = 0.05 + 0.02j  # XCoM error that stepping leaves to the ankles
+    ankle_band_m: complex = 0.03 + 0.01j  # XCoM error that stepping leaves to the ankles
     step_reach_m: complex = 0.30 + 0.25j  # largest shift of a landing
     crossing_m: float = 0.15  # the swing foot may cross the stance foot's line by this much
     fall_height: float = 0.75  # of the pendulum length: lower is a fall
@@ -101,22 +108,38 @@ class Push:
 class Plan:
     """The firmware's plan at one tick: x from the planned stance CoP, y from the walking line."""
 
+    mode: int
     support: int
-    step_count: int  # modulo 65536
     step_length_m: float
-    speed_m_s: float
+    speed_m_s: float  # exactly 0 while both feet stand
     com_m: complex
     velocity_m_s: complex
     feet_m: tuple[complex, complex]
     foot_heights_m: tuple[float, float]
-    swing_velocity_m_s: float  # forward
+    swing_velocity_m_s: complex
     swing_rise_m_s: float
-    time_to_heel_strike_s: float
+    time_to_via_point_s: float
+    time_to_landing_s: float  # not told of a last swing
     landing_m: complex
     leg_length_m: float
 
     @property
+    def both_feet_stand(self) -> bool:
+        return self.speed_m_s == 0.0
+
+    @property
+    def lands_beside(self) -> bool:
+        """The running swing is the last one and ends beside the stance foot."""
+        return self.landing_m.real <= 0.0
+
+    @property
+    def landing_in_s(self) -> float:
+        """Time until the swing foot comes down."""
+        return self.time_to_via_point_s if self.lands_beside else self.time_to_landing_s
+
+    @property
     def step_s(self) -> float:
+        """Duration of a whole step at the present speed."""
         return self.step_length_m / self.speed_m_s
 
 
@@ -138,7 +161,7 @@ class SteadyStep:
     double support and then rolls from heel to toe. While the CoP p moves evenly, the XCoM is
     p + p'/w + c exp(w t); c follows from each step being the mirror image of the one before.
 
-    Left support; x from the stance foot, y from the walking line, time from heel strike.
+    Left support; x from the stance foot, y from midway between the feet, time from landing.
     """
 
     def __init__(self, body: Body, step_m: float, width_m: float, step_s: float) -> None:
@@ -154,18 +177,18 @@ class SteadyStep:
         grown, late = math.exp(-w * step_s), math.exp(-w * crossing_s)
         forward = jump.real * (1 - late) / (1 - grown)
         lateral = (jump.imag * late - (self._crossing + self._roll).imag / w) / (1 + grown)
-        self._end_s = step_s
+        self.step_s = step_s
         self._end_offset = complex(forward, lateral)
         self._crossed_offset = self._end_offset * math.exp(w * (crossing_s - step_s)) - jump
 
     def at(self, time_s: float) -> tuple[complex, complex]:
-        """CoP and XCoM `time_s` after heel strike, in [0, step_s]."""
+        """CoP and XCoM `time_s` after landing, in [0, step_s]."""
         if time_s < self._crossing_s:
             cop, rate = self._start + self._crossing * time_s, self._crossing
             offset = self._crossed_offset * math.exp(self._w * (time_s - self._crossing_s))
         else:
             cop, rate = self._enter + self._roll * (time_s - self._crossing_s), self._roll
-            offset = self._end_offset * math.exp(self._w * (time_s - self._end_s))
+            offset = self._end_offset * math.exp(self._w * (time_s - self.step_s))
         return cop, cop + rate / self._w + offset
 
 
@@ -188,11 +211,13 @@ def _limited(point: complex, limit: complex) -> complex:
 
 
 class Wearer:
-    """Stands until the first plan comes, then is found walking in its posture, and follows it.
+    """Stands until the first plan comes, and follows it.
 
-    `follow(plan)` gives the newest plan, `step()` advances by 1 ms. One seed, one sequence of
-    calls: the same bits. A fall is for good: `fallen` when the CoM is lower over every supporting
-    foot than `fall_height` of the pendulum, that is too far away from them to be carried.
+    The plan's frame is held against the stance foot that is really there, so that landings beside
+    their place do not add up. `follow(plan)` gives the newest plan, `step()` advances by 1 ms. One
+    seed, one sequence of calls: the same bits. A fall is for good: `fallen` when the CoM is lower
+    over every supporting foot than `fall_height` of the pendulum, that is too far away from them to
+    be carried.
     """
 
     PLAN_MAX_AGE_S = 0.3  # an older plan is not followed any more
@@ -207,12 +232,13 @@ class Wearer:
         self.body = body or Body()
         self.noise = noise or Noise()
         self.pushes = pushes
-        self.time_s = 0.0  # since the walk began
+        self.time_s = 0.0  # since the first plan
         self.com_m = self.cop_m = 0j
         self.velocity_m_s = 0j
-        self.height_m = self.body.pendulum_m
         self.rise_m_s = 0.0
-        self.feet = [Foot(0.1j, leg_m=self.height_m), Foot(-0.1j, leg_m=self.height_m)]
+        pendulum_m = self.body.pendulum_m
+        self.feet = [Foot(side * STANCE_M, leg_m=pendulum_m) for side in (1j, -1j)]
+        self.height_m = self._height_over(self.feet[LEFT])
         self.fallen = False
         self.fell_at_s = math.nan
         self.pushed_n_s = 0j  # impulse received so far
@@ -220,9 +246,11 @@ class Wearer:
         self._random = np.random.default_rng(seed)
         self._plan: Plan | None = None
         self._plan_age_s = 0.0
-        self._origin_m = 0.0  # world x of the planned stance foot
+        self._origin_m = 0j  # of the plan's frame, in the world
+        self._acceleration_m_s2 = 0j  # of the planned CoM
+        self._midline_m = 0j  # of the running step, at the stance foot
         self._leading = LEFT  # the foot that landed last
-        self._since_landing_s = math.inf
+        self._since_landing_s = math.inf  # since standing: inf
         self._unsteadiness = 0j
         self._steps = 0
         self._started = False
@@ -249,38 +277,45 @@ class Wearer:
         )
 
     @property
-    def origin_m(self) -> float:
-        """World x of the planned stance foot."""
+    def origin_m(self) -> complex:
+        """Of the plan's frame, in the world."""
         return self._origin_m
 
     def follow(self, plan: Plan | None) -> None:
-        """Take the newest plan; None while no walk is planned."""
-        before, self._plan, self._plan_age_s = self._plan, plan, 0.0
+        """Take the newest plan; None while there is none."""
+        before, interval_s = self._plan, self._plan_age_s
+        self._plan, self._plan_age_s = plan, 0.0
         if plan is None or self.fallen:
             return
-        width_m = abs(plan.landing_m.imag - plan.feet_m[plan.support].imag)
-        self._steady = SteadyStep(self.body, plan.step_length_m, width_m, plan.step_s)
-        if not self._started:
-            self._start(plan)
-        elif before is None:  # walks on after a gap, from where the foot stands
-            self._origin_m = self.feet[plan.support].position_m.real
-        else:
-            heel_strikes = (plan.step_count - before.step_count) % 65536
-            self._origin_m += heel_strikes * plan.step_length_m
-        if not self.feet[plan.support].contact:
-            self._land(plan.support)
-
-    def _start(self, plan: Plan) -> None:
         self._started = True
-        self._leading = plan.support
-        for side, foot in enumerate(self.feet):
-            foot.position_m = plan.feet_m[side]
-            foot.height_m = plan.foot_heights_m[side]
-            foot.contact = side == plan.support
-            foot.leg_m = plan.leg_length_m
-        self.com_m = plan.com_m
-        self.cop_m, xcom = self._reference()
-        self.velocity_m_s = (xcom - self.com_m) * self.body.natural_frequency_rad_s
+        if plan.both_feet_stand:
+            self._stand()
+        if plan.both_feet_stand or plan.mode == STARTING:
+            self._leading, self._since_landing_s = plan.support, math.inf
+        elif not self.feet[plan.support].contact:
+            self._land(plan.support)
+        stance = plan.feet_m[plan.support]
+        self._origin_m = self.feet[plan.support].position_m - stance
+        gained = plan.velocity_m_s - before.velocity_m_s if before and interval_s else 0j
+        self._acceleration_m_s2 = gained / interval_s if gained else 0j
+        if not plan.both_feet_stand:
+            across_m = (plan.landing_m - stance).imag
+            self._midline_m = self.feet[plan.support].position_m + 0.5j * across_m
+            self._steady = SteadyStep(
+                self.body, plan.step_length_m, abs(across_m), self._step_s(plan)
+            )
+
+    def _step_s(self, plan: Plan) -> float:
+        """Duration of a whole step: at the present speed; on the first swing, at its landing."""
+        speed_m_s = plan.speed_m_s
+        if self._is_first_swing and plan.landing_in_s > STEP_S:
+            way_m = plan.step_length_m / 2 - plan.com_m.real
+            speed_m_s = 2 * way_m / plan.landing_in_s - speed_m_s
+        return plan.step_length_m / max(speed_m_s, SPEED_MIN_M_S)
+
+    @property
+    def _is_first_swing(self) -> bool:
+        return math.isinf(self._since_landing_s)
 
     def step(self) -> None:
         """Advance by STEP_S."""
@@ -293,39 +328,78 @@ class Wearer:
         self._since_landing_s += STEP_S
         if self._plan_age_s > self.PLAN_MAX_AGE_S:
             self._plan = None
-        cop, xcom = self._reference()
+        _, xcom = self._reference(self._plan_age_s)
+        cop, _ = self._reference(self._plan_age_s + self.body.cop_lag_s)
         self.xcom_error_m = self.xcom_m - xcom
         self._move_feet()
         self._move_cop(cop + (1 + self.body.cop_gain) * self.xcom_error_m)
         self._move_com()
         self._carry()
 
-    def _reference(self) -> tuple[complex, complex]:
-        """CoP and XCoM to be at, in the world: those of the plan's steady walk, else midway."""
-        plan = self._plan
-        if plan is None:
+    def _reference(self, age: float) -> tuple[complex, complex]:
+        """CoP and XCoM to be at, in the world: midway between the feet if there is no plan."""
+        if self._plan is None:
             middle = (self.feet[LEFT].position_m + self.feet[RIGHT].position_m) / 2
             return middle, middle
-        since_strike = plan.step_s - plan.time_to_heel_strike_s + self._plan_age_s
-        ahead, time_s = divmod(since_strike, plan.step_s)
-        cop, xcom = self._steady.at(time_s)
+        if self._plan.both_feet_stand:
+            return self._planned_reference(self._plan, age)
+        if self._is_first_swing or self._plan.lands_beside:
+            return self._half_step_reference(self._plan, age)
+        return self._steady_reference(self._plan, age)
+
+    def _planned_reference(self, plan: Plan, age: float) -> tuple[complex, complex]:
+        """Those of the planned CoM."""
+        w = self.body.natural_frequency_rad_s
+        gained = self._acceleration_m_s2 * age
+        com = self._origin_m + plan.com_m + (plan.velocity_m_s + gained / 2) * age
+        return com - self._acceleration_m_s2 / w**2, com + (plan.velocity_m_s + gained) / w
+
+    def _half_step_reference(self, plan: Plan, age: float) -> tuple[complex, complex]:
+        """Those of the plan forward; across, those of a fall about the inner side of the foot.
+
+        The fall of a first swing ends where a steady step begins, that of a last one where the plan
+        rests. A last swing keeps the XCoM over the foot: from behind it, there is no way on.
+        """
+        cop, xcom = self._planned_reference(plan, age)
+        foot = self.feet[plan.support].position_m
+        outward = math.copysign(1.0, (self._midline_m - foot).imag)
+        inner_y = foot.imag + outward * self.body.inner_m
+        cop_x, xcom_x = cop.real, xcom.real
+        half_width = abs((self._midline_m - foot).imag)
+        if plan.lands_beside:
+            end_y = foot.imag + outward * half_width * REST_SHARE
+            rearmost_x = foot.real - self.body.foot_half_length_m / 2
+            if xcom_x < rearmost_x:
+                cop_x = xcom_x = rearmost_x
+        else:
+            end_y = self._midline_m.imag + outward * self._steady.at(0.0)[1].imag
+        left_s = max(plan.landing_in_s - age, 0.0)
+        grown = math.exp(-self.body.natural_frequency_rad_s * left_s)
+        return complex(cop_x, inner_y), complex(xcom_x, inner_y + (end_y - inner_y) * grown)
+
+    def _steady_reference(self, plan: Plan, age: float) -> tuple[complex, complex]:
+        """Those of the steady walk at the plan's place in the step, and what its speed gains."""
+        w = self.body.natural_frequency_rad_s
+        acceleration = self._acceleration_m_s2.real
+        way_m = plan.com_m.real + (plan.speed_m_s + acceleration * age / 2) * age
+        ahead, progress = divmod(max(way_m / plan.step_length_m + 0.5, 0.0), 1.0)
+        cop, xcom = self._steady.at(progress * self._steady.step_s)
         if plan.support ^ (int(ahead) & 1) == RIGHT:
             cop, xcom = cop.conjugate(), xcom.conjugate()
-        stance = self._origin_m + ahead * plan.step_length_m
-        return stance + cop, stance + xcom
+        stance = self._midline_m + ahead * plan.step_length_m
+        return stance + cop - acceleration / w**2, stance + xcom + acceleration * age / w
 
     def _move_feet(self) -> None:
         plan = self._plan
         if plan is None:
-            for side in (LEFT, RIGHT):
-                if not self.feet[side].contact:
-                    self._land(side)
+            self._stand()
+        if plan is None or plan.both_feet_stand:
             return
         swing = RIGHT if plan.support == LEFT else LEFT
         foot = self.feet[swing]
-        due = self._plan_age_s >= plan.time_to_heel_strike_s
+        due = self._plan_age_s >= plan.landing_in_s
         if foot.contact:
-            foot.contact = due or self._since_landing_s < self.body.double_support * plan.step_s
+            foot.contact = due or self._trailing_share() > 0
         else:
             self._swing(plan, swing, foot)
             if due:
@@ -334,24 +408,35 @@ class Wearer:
     def _swing(self, plan: Plan, side: int, foot: Foot) -> None:
         """Critically damped pursuit of the planned foot, shifted by what the ankles cannot mend."""
         age = self._plan_age_s
-        target = self._origin_m + plan.feet_m[side] + plan.swing_velocity_m_s * age
-        target = complex(min(target.real, self._origin_m + plan.landing_m.real), target.imag)
-        target += self._landing_shift(plan.time_to_heel_strike_s - age)
+        rate = plan.swing_velocity_m_s
+        shift = self._origin_m + self._landing_shift(plan.landing_in_s - age)
+        landing = shift + plan.landing_m
+        target = shift + plan.feet_m[side] + rate * age
+        if target.real > landing.real:
+            target, rate = complex(landing.real, target.imag), 1j * rate.imag
         outward = 1 if side == LEFT else -1
         line = self.feet[plan.support].position_m.imag - outward * self.body.crossing_m
         if outward * (target.imag - line) < 0:
             target = complex(target.real, line)
         lag = self.body.foot_lag_s
-        pull = (target - foot.position_m) / lag + 2 * (plan.swing_velocity_m_s - foot.velocity_m_s)
+        pull = (target - foot.position_m) / lag + 2 * (rate - foot.velocity_m_s)
         foot.velocity_m_s += pull * (STEP_S / lag)
+        if foot.position_m.real >= landing.real and foot.velocity_m_s.real > 0:
+            foot.velocity_m_s = 1j * foot.velocity_m_s.imag
         foot.position_m += foot.velocity_m_s * STEP_S
         foot.height_m = max(plan.foot_heights_m[side] + plan.swing_rise_m_s * age, 0.0)
 
     def _landing_shift(self, time_to_landing_s: float) -> complex:
         """The XCoM error that will be left at landing when the ankles do what they can."""
         beyond = self.xcom_error_m - _limited(self.xcom_error_m, self.body.ankle_band_m)
-        growth = math.exp(self.body.natural_frequency_rad_s * max(time_to_landing_s, 0.0))
+        foreseen_s = min(max(time_to_landing_s, 0.0), FORESIGHT_S)
+        growth = math.exp(self.body.natural_frequency_rad_s * foreseen_s)
         return _limited(beyond * growth, self.body.step_reach_m)
+
+    def _stand(self) -> None:
+        for side in (LEFT, RIGHT):
+            if not self.feet[side].contact:
+                self._land(side)
 
     def _land(self, side: int) -> None:
         self.feet[side].land()
@@ -362,10 +447,15 @@ class Wearer:
         """The most of the load that the trailing foot may carry: it hands over what it has."""
         if not self.feet[1 - self._leading].contact:
             return 0.0
-        if self._plan is None:
+        if self._plan is None or self._plan.both_feet_stand or self._must_wait(self._plan):
             return 1.0
         duration_s = self.body.double_support * self._plan.step_s
         return max(1.0 - self._since_landing_s / duration_s, 0.0)
+
+    def _must_wait(self, plan: Plan) -> bool:
+        """The last swing is slow: it does not begin before the stance foot can carry alone."""
+        lever_m = (self.xcom_m - self.feet[plan.support].position_m).imag
+        return plan.lands_beside and abs(lever_m) > self.body.foot_half_width_m
 
     def _move_cop(self, wanted: complex) -> None:
         """Follow the wanted CoP with a lag, within the hull of the feet that stand."""

@@ -2,14 +2,14 @@
 
 import math
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import can
 
 from saddlewalk.core import Command
-from saddlewalk.emulator import LEFT, RIGHT, STEP_S, Measurement, Plan, Wearer
+from saddlewalk.emulator import LEFT, RIGHT, STANDING, STEP_S, Measurement, Plan, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages, TickReader, next_tick
 from saddlewalk.wire import Sender
@@ -20,6 +20,9 @@ START_TICKS = 125  # of standing before a walk is given up: 10 s
 RESEND_S = 0.25
 
 MODE_STAND, MODE_WALK = 0, 1
+
+
+Schedule = Callable[[float], Command]  # what is asked for at a time of the walk, s
 
 
 @dataclass(frozen=True)
@@ -45,25 +48,27 @@ class Observer:
 
 
 def plan_of(messages: Messages) -> Plan | None:
-    """The plan of one tick; None while none is planned or a number of it is not available."""
+    """The plan of one tick; None if the tick failed or a number of it is not available."""
     step, swing, landing = messages["PLAN_STEP"], messages["PLAN_SWING"], messages["PLAN_LANDING"]
     com, velocity = messages["PLAN_COM"], messages["PLAN_COM_VELOCITY"]
     left, right = messages["PLAN_LEFT"], messages["PLAN_RIGHT"]
+    events = messages["PLAN_EVENTS"]
     numbers = [value for part in PLAN_MESSAGES for value in messages[part].values()]
     if not step["VALID"] or not all(map(math.isfinite, numbers)):
         return None
     return Plan(
+        mode=int(events["MODE"]),
         support=int(step["SUPPORT"]),
-        step_count=int(step["STEP_COUNT"]),
         step_length_m=step["STEP_LENGTH"],
         speed_m_s=messages["PLAN_ANKLE"]["SPEED"],
         com_m=complex(com["X"], com["Y"]),
         velocity_m_s=complex(velocity["VX"], velocity["VY"]),
         feet_m=(complex(left["X"], left["Y"]), complex(right["X"], right["Y"])),
         foot_heights_m=(left["Z"], right["Z"]),
-        swing_velocity_m_s=swing["VX"],
+        swing_velocity_m_s=complex(swing["VX"], swing["VY"]),
         swing_rise_m_s=swing["VZ"],
-        time_to_heel_strike_s=messages["PLAN_EVENTS"]["TIME_TO_HEEL_STRIKE"],
+        time_to_via_point_s=events["TIME_TO_VIA_POINT"],
+        time_to_landing_s=events["TIME_TO_TOE_OFF"],
         landing_m=complex(landing["X"], landing["Y"]),
         leg_length_m=landing["LEG_LENGTH"],
     )
@@ -72,15 +77,14 @@ def plan_of(messages: Messages) -> Plan | None:
 class Exoskeleton:
     """Sends the wearer's measurements, follows the plan that comes back, publishes the truth.
 
-    A walk in progress is ended before the own one is begun, because the firmware keeps the speed
-    with which a walk began.
+    A walk in progress is ended first: the own one begins when the firmware plans to stand.
     """
 
     def __init__(
         self,
         bus: can.BusABC,
         wearer: Wearer,
-        command: Command,
+        schedule: Schedule,
         lcm: Any = None,
         observers: Iterable[Observer] = (),
     ) -> None:
@@ -88,10 +92,11 @@ class Exoskeleton:
         self.frames_sent = 0
         self.ticks = 0
         self.health: dict[str, float] = {}  # the newest
-        self._bus, self._lcm, self._wearer, self._command = bus, lcm, wearer, command
+        self.mode: int | None = None  # of the newest plan; None without one
+        self._bus, self._lcm, self._wearer, self._schedule = bus, lcm, wearer, schedule
         self._observers = tuple(observers)
         self._sender = Sender()
-        self._mode = MODE_STAND
+        self._begun = False
         self._pushed_n_s = 0j
 
     def run(self, clock: str, duration_s: float) -> None:
@@ -108,7 +113,7 @@ class Exoskeleton:
             self._advance(round(TICK_S / STEP_S))
             self._publish_truth()
             self._poll()
-        self._mode = MODE_STAND
+        self._begun = False
         self._send_command_frame()
 
     def _run_realtime(self, duration_s: float) -> None:
@@ -128,7 +133,7 @@ class Exoskeleton:
                 heard_s = time.monotonic()
             elif time.monotonic() - heard_s > SILENCE_S:
                 raise self._silent()
-        self._mode = MODE_STAND
+        self._begun = False
         self._publish_command()
 
     def _silent(self) -> UserError:
@@ -168,9 +173,8 @@ class Exoskeleton:
 
     def _take(self, messages: Messages) -> None:
         plan = plan_of(messages)
-        if self._mode == MODE_STAND:
-            self._mode = MODE_WALK if plan is None else MODE_STAND
-            plan = None
+        self._begun = self._begun or (plan is not None and plan.mode == STANDING)
+        plan = plan if self._begun else None
         self.ticks += 1
         if self._wearer.time_s == 0 and self.ticks > START_TICKS:
             raise UserError(
@@ -178,6 +182,7 @@ class Exoskeleton:
                 "give both the same --clock and --lcm"
             )
         self.health = messages["HEALTH"]
+        self.mode = plan.mode if plan else None
         self._wearer.follow(plan)
         tick = Tick(self._wearer.time_s, messages, plan)
         for observer in self._observers:
@@ -202,13 +207,15 @@ class Exoskeleton:
         for observer in self._observers:
             observer.frame(frame)
 
+    def _command(self) -> tuple[int, float, float]:
+        """Mode, speed and heel-strike angle asked for now."""
+        asked = self._schedule(self._wearer.time_s)
+        walk = self._begun and asked.speed_m_s > 0
+        return MODE_WALK if walk else MODE_STAND, asked.speed_m_s, asked.heel_strike_rad
+
     def _send_command_frame(self) -> None:
-        self._send(
-            "COMMAND",
-            MODE=self._mode,
-            SPEED=self._command.speed_m_s,
-            HEEL_STRIKE=self._command.heel_strike_rad,
-        )
+        mode, speed_m_s, heel_strike_rad = self._command()
+        self._send("COMMAND", MODE=mode, SPEED=speed_m_s, HEEL_STRIKE=heel_strike_rad)
 
     def _send_measurement(self) -> None:
         measured: Measurement = self._wearer.measure()
@@ -223,9 +230,7 @@ class Exoskeleton:
 
         message = command_t()
         message.utime_us = time.time_ns() // 1000
-        message.mode = self._mode
-        message.speed_m_s = self._command.speed_m_s
-        message.heel_strike_rad = self._command.heel_strike_rad
+        message.mode, message.speed_m_s, message.heel_strike_rad = self._command()
         self._lcm.publish("SADDLEWALK_COMMAND", message.encode())
 
     def _publish_truth(self) -> None:

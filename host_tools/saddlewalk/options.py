@@ -38,19 +38,11 @@ def whole_number_in(low: int, high: int) -> Callable[[str], int]:
 speed = number_in(1e-3, 10, "m/s")
 
 
-def add_gait_options(
-    parser: argparse.ArgumentParser, default_speed_m_s: float | None = None
-) -> None:
-    """--speed or --schedule, one required unless the speed has a default, and --hs-angle."""
-    default = "" if default_speed_m_s is None else f" (default {default_speed_m_s:g})"
-    pace = parser.add_mutually_exclusive_group(required=default_speed_m_s is None)
-    pace.add_argument(
-        "--speed",
-        type=speed,
-        default=default_speed_m_s,
-        metavar="M/S",
-        help="walking speed" + default,
-    )
+def add_gait_options(parser: argparse.ArgumentParser, default_pace: str | None = None) -> None:
+    """--speed or --schedule, one required unless there is a default to tell of, and --hs-angle."""
+    default = "" if default_pace is None else f" (default {default_pace})"
+    pace = parser.add_mutually_exclusive_group(required=default_pace is None)
+    pace.add_argument("--speed", type=speed, metavar="M/S", help="walking speed" + default)
     pace.add_argument(
         "--schedule",
         metavar="FILE",

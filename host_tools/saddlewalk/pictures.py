@@ -1,8 +1,9 @@
-"""The picture of a recorded walk: from above, the CoM's height, the scores."""
+"""The picture of a recorded walk: from above, whole and closely; speed, height and scores."""
 
 import csv
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -11,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Polygon
 
 from saddlewalk.core import ffi, library
-from saddlewalk.emulator import Push
+from saddlewalk.emulator import MODES, STANDING, STARTING, STOPPING, Push
 from saddlewalk.lcm_types import bos_t
 
 matplotlib.use("Agg")
@@ -21,15 +22,16 @@ BLUE, SKY, GREEN, ORANGE, RED, PINK = "#0072B2 #56B4E9 #009E73 #E69F00 #D55E00 #
 BEFORE_S, AFTER_S = 1.2, 3.0  # the part of the walk shown closely, about the first push
 FOOT_M = (0.26, 0.09)
 FEET = (("left", GREEN), ("right", RED))
+SHADES = {STANDING: "0.85", STARTING: "#DDEEDD", STOPPING: "#F6E3D5"}
 
 Columns = dict[str, np.ndarray]
 
 
 def read_walk(path: Path) -> Columns:
-    """The numbers of walk.csv by column: NaN where a cell is empty, support 0 left and 1 right."""
+    """The numbers of walk.csv by column: NaN where a cell is empty, mode and support by number."""
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
-    codes = {"left": "0", "right": "1"}
+    codes = {"left": "0", "right": "1"} | {name: str(mode) for mode, name in enumerate(MODES)}
     return {
         name: np.array([float(codes.get(row[name], row[name]) or "nan") for row in rows])
         for name in rows[0]
@@ -40,23 +42,43 @@ def read_walk(path: Path) -> Columns:
 def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push], cop_range_m: float) -> None:
     """Draw walk.csv, whole or as far as it goes. cop_range_m: d_h of the walker."""
     walk = read_walk(csv_path)
-    figure = Figure(figsize=(13, 10), dpi=110, layout="constrained")
-    above, height, scores, margins = figure.subplots(4, 1, height_ratios=(1.7, 1, 1, 1))
+    figure = Figure(figsize=(13, 13), dpi=110, layout="constrained")
+    whole, above, speed, height, scores, margins = figure.subplots(
+        6, 1, height_ratios=(0.6, 1.7, 0.8, 0.8, 0.9, 0.9)
+    )
     shown = _shown(walk["time_s"], pushes)
     closely = {name: column[shown] for name, column in walk.items()}
-    speed = np.nanmedian(walk["plan_speed_m_s"])
-    figure.suptitle(f"Walking at {speed:.2f} m/s: the plan, and the wearer who follows it")
+    figure.suptitle("A walk: the plan, and the wearer who follows it")
+    _draw_whole(whole, walk, closely)
     _draw_above(above, closely, pushes, cop_range_m)
+    _draw_lines(
+        speed, walk, (("true_com_vx_m_s", "true"), ("plan_speed_m_s", "planned")), modes=True
+    )
+    speed.set(ylabel="speed (m/s)")
     _draw_height(height, closely)
     _draw_lines(scores, walk, (("s_pend", "S_pend"), ("s_jump", "S_jump"), ("s_sw", "S_SW")))
-    scores.set(ylabel="stability score\n(1 reference, 0 limit)")
+    scores.set(ylabel="stability score\n(1 reference, 0 limit)", ylim=(-0.5, 1.6))
     _draw_lines(margins, walk, (("mos_com_m", "CoM"), ("mos_xcom_m", "XCoM")))
     margins.set(ylabel="margin in the base\nof support (m)", xlabel="time (s)")
-    for axes in (height, scores, margins):
+    for axes in (speed, height, scores, margins):
         _mark(axes, pushes)
-    for axes in (scores, margins):
-        axes.axvspan(*closely["time_s"][[0, -1]], color="0.94", zorder=0)
     figure.savefig(png_path)
+
+
+def _footprint(colour: str) -> dict[str, Any]:
+    return {"color": colour, "alpha": 0.55, "lw": 0}
+
+
+def _draw_whole(axes: Axes, walk: Columns, closely: Columns) -> None:
+    """The whole walk from above, and which part of it is shown closely."""
+    for side, colour in FEET:
+        _draw_stood(axes, walk, "true", side, walk[f"{side}_contact"] > 0, _footprint(colour))
+    axes.plot(walk["true_com_x_m"], walk["true_com_y_m"], color=BLUE, lw=1.2)
+    axes.axvspan(*closely["true_com_x_m"][[0, -1]], color="0.92", zorder=0)
+    axes.set_aspect("equal")
+    axes.set(ylabel="to the left (m)")
+    axes.set_xlim(walk["true_com_x_m"].min() - 0.3, walk["true_com_x_m"].max() + 0.3)
+    axes.set_ylim(*_lateral_limits(walk))
 
 
 def _shown(time_s: np.ndarray, pushes: Sequence[Push]) -> np.ndarray:
@@ -81,8 +103,7 @@ def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], cop_range_m: 
     axes.set_aspect("equal")
     axes.set(xlabel="forward (m)", ylabel="to the left (m)")
     axes.set_xlim(walk["true_com_x_m"].min() - 0.2, walk["true_com_x_m"].max() + 0.2)
-    lateral = np.concatenate([walk[f"true_{side}_y_m"] for side, _ in FEET])
-    axes.set_ylim(min(lateral.min() - 0.15, -0.5), max(lateral.max() + 0.15, 0.5))
+    axes.set_ylim(*_lateral_limits(walk))
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False)
 
 
@@ -100,15 +121,23 @@ def _bos(walk: Columns, index: int, cop_range_m: float) -> np.ndarray:
 
 def _draw_feet(axes: Axes, walk: Columns, planned: np.ndarray, side: str, colour: str) -> None:
     """Footprints where the foot stood, full, and where it was planned to stand, outlined."""
-    stood = walk[f"{side}_contact"] > 0
-    for prefix, there, style in (
-        ("true", stood, {"color": colour, "alpha": 0.55, "lw": 0}),
-        ("plan", planned, {"fill": False, "ec": "black", "ls": "--", "lw": 0.8}),
-    ):
-        places = np.column_stack([walk[f"{prefix}_{side}_x_m"], walk[f"{prefix}_{side}_y_m"]])
-        for place in np.unique(places[there].round(3), axis=0):
-            axes.add_patch(Ellipse(place, *FOOT_M, **style))
+    outline = {"fill": False, "ec": "black", "ls": "--", "lw": 0.8}
+    _draw_stood(axes, walk, "true", side, walk[f"{side}_contact"] > 0, _footprint(colour))
+    _draw_stood(axes, walk, "plan", side, planned, outline)
     axes.plot([], [], "o", color=colour, alpha=0.55, ms=9, label=f"{side} foot")
+
+
+def _draw_stood(
+    axes: Axes, walk: Columns, whose: str, side: str, there: np.ndarray, style: dict[str, Any]
+) -> None:
+    places = np.column_stack([walk[f"{whose}_{side}_x_m"], walk[f"{whose}_{side}_y_m"]])
+    for place in np.unique(places[there].round(3), axis=0):
+        axes.add_patch(Ellipse(place, *FOOT_M, **style))
+
+
+def _lateral_limits(walk: Columns) -> tuple[float, float]:
+    lateral = np.concatenate([walk[f"true_{side}_y_m"] for side, _ in FEET])
+    return min(lateral.min() - 0.15, -0.5), max(lateral.max() + 0.15, 0.5)
 
 
 def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
@@ -134,12 +163,27 @@ def _draw_height(axes: Axes, walk: Columns) -> None:
     axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
 
 
-def _draw_lines(axes: Axes, walk: Columns, names: Sequence[tuple[str, str]]) -> None:
+def _draw_lines(
+    axes: Axes, walk: Columns, names: Sequence[tuple[str, str]], modes: bool = False
+) -> None:
+    """Lines over the whole walk; modes: name the shades, which tell what the plan is doing."""
     styles = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."))
     for (name, label), (colour, style) in zip(names, styles, strict=False):
         axes.plot(walk["time_s"], walk[name], color=colour, ls=style, lw=1.6, label=label)
     axes.axhline(0, color="0.4", lw=0.8)
     axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
+    for mode, shade in SHADES.items():
+        for start_s, end_s in _spans(walk["time_s"], walk["mode"] == mode):
+            axes.axvspan(start_s, end_s, color=shade, lw=0, zorder=0)
+        if modes:
+            axes.fill_between([], [], color=shade, label=MODES[mode])
+
+
+def _spans(time_s: np.ndarray, there: np.ndarray) -> list[tuple[float, float]]:
+    """Begin and end of each run of True; a run ends where the next sample is."""
+    edges = np.flatnonzero(np.diff(there, prepend=False, append=False))
+    last = len(time_s) - 1
+    return [(time_s[a], time_s[min(b, last)]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def _mark(axes: Axes, pushes: Sequence[Push]) -> None:

@@ -13,7 +13,7 @@ from typing import Self
 import can
 import lcm
 
-from saddlewalk.emulator import Wearer
+from saddlewalk.emulator import MODES, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.exoskeleton import Observer, Tick
 from saddlewalk.lcmbus import listen, receive
@@ -26,7 +26,7 @@ CHANNELS = tuple(f"SADDLEWALK_{part}" for part in ("PLAN", "SCORES", "BOS", "HEA
 
 _POINTS = "com_x_m com_y_m com_z_m left_x_m left_y_m left_z_m right_x_m right_y_m right_z_m".split()
 COLUMNS = (
-    "time_s step_count phase theta_rad support".split()
+    "time_s mode step_count phase theta_rad support".split()
     + [f"plan_{name}" for name in _POINTS]
     + "plan_speed_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m v_comp_m_s".split()
     + "gravity_x_n gravity_y_n faults limits".split()
@@ -109,17 +109,22 @@ def row(tick: Tick, wearer: Wearer) -> list[Cell]:
     ]
 
 
-def _planned(tick: Tick, origin_m: float) -> list[Cell]:
+def _planned(tick: Tick, origin_m: complex) -> list[Cell]:
     if tick.plan is None:
         return [None] * (COLUMNS.index("plan_speed_m_s"))
     step = tick.messages["PLAN_STEP"]
     points = [tick.messages[name] for name in ("PLAN_COM", "PLAN_LEFT", "PLAN_RIGHT")]
     return [
+        MODES[tick.plan.mode],
         int(step["STEP_COUNT"]),
         int(step["PHASE"]),
         step["THETA"],
         "right" if step["SUPPORT"] else "left",
-        *(value for p in points for value in (origin_m + p["X"], p["Y"], p["Z"])),
+        *(
+            value
+            for p in points
+            for value in (origin_m.real + p["X"], origin_m.imag + p["Y"], p["Z"])
+        ),
         tick.plan.speed_m_s,
     ]
 

@@ -1,6 +1,7 @@
 """`saddlewalk demo` and `emulate` end to end, with the real firmware process on private ports."""
 
 import csv
+import itertools
 import signal
 import socket
 import subprocess
@@ -14,7 +15,6 @@ import pytest
 
 from saddlewalk.bus import open_bus, private_udp
 from saddlewalk.cli import main
-from saddlewalk.emulator import STEP_S
 from saddlewalk.recorder import CHANNELS, COLUMNS
 from saddlewalk.ticks import TICK_S
 
@@ -30,6 +30,9 @@ def ports() -> list[str]:
     return ["--can", private_udp(), "--lcm", f"udpm://239.255.76.67:{port}?ttl=0"]
 
 
+WALK = ["--speed", "1.2", "--duration", "5", "--push", "8@4:90"]
+
+
 def demo(folder: Path, ports: list[str], *options: str) -> int:
     return main(["demo", "--clock", "lockstep", "--out", str(folder), *ports, *options])
 
@@ -39,20 +42,29 @@ def rows(folder: Path) -> list[dict[str, str]]:
 
 
 def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys):
-    assert demo(tmp_path, ports, "--duration", "4", "--push", "8@2:90") == 0
+    assert demo(tmp_path, ports) == 0
     told = capsys.readouterr().out
     assert "did not fall" in told and "BAD" not in told and "push of 8 N s to 90 degrees" in told
+    assert "stands at the end" in told
     assert {path.name for path in tmp_path.iterdir()} == FILES
 
     walk = rows(tmp_path)
     assert list(walk[0]) == COLUMNS
-    walking = [row for row in walk if row["support"]]
-    # The walk starts with the first plan; before it stands one tick.
-    assert len(walking) == round(4 / TICK_S) and len(walk) == len(walking) + 1
-    assert float(walking[-1]["time_s"]) == pytest.approx(4 - TICK_S, abs=STEP_S / 2)
-    assert float(walking[-1]["true_com_x_m"]) == pytest.approx(1.2 * (4 - TICK_S), abs=0.15)
+    modes = [row["mode"] for row in walk]
+    assert [mode for mode, _ in itertools.groupby(modes)] == [
+        "standing",
+        "starting",
+        "walking",
+        "stopping",
+        "standing",
+    ]
+    speeds = {float(row["time_s"]): float(row["plan_speed_m_s"]) for row in walk}
+    assert len(walk) == round(22 / TICK_S) == len(speeds)
+    at = [speeds[time_s] for time_s in (0.96, 6.0, 10.0, 21.92)]
+    assert at == pytest.approx([0.0, 0.8, 1.2, 0.0], abs=1e-4)  # the wire's resolution
+    walked_m = sum(speeds.values()) * TICK_S
+    assert float(walk[-1]["true_com_x_m"]) == pytest.approx(walked_m, abs=0.2)
     assert float(walk[-1]["pushed_y_n_s"]) == pytest.approx(8.0, abs=1e-9)
-    assert all(0.2 < float(row["s_sw"]) <= 1.0 for row in walking[5:25])
 
     with can.CanutilsLogReader(tmp_path / "walk.candump.log") as log:
         frames = [frame.arbitration_id for frame in log]
@@ -69,8 +81,8 @@ def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys
 
 def test_demo_in_lockstep_gives_the_same_bits_each_time(tmp_path, ports):
     for folder in ("one", "two"):
-        demo(tmp_path / folder, ports, "--duration", "3", "--seed", "5")
-    demo(tmp_path / "other", ports, "--duration", "3", "--seed", "6")
+        demo(tmp_path / folder, ports, *WALK, "--seed", "5")
+    demo(tmp_path / "other", ports, *WALK, "--seed", "6")
     one, two, other = (
         (tmp_path / folder / "walk.csv").read_bytes() for folder in ("one", "two", "other")
     )
@@ -78,7 +90,7 @@ def test_demo_in_lockstep_gives_the_same_bits_each_time(tmp_path, ports):
 
 
 def test_a_fall_is_told_and_is_not_sound(tmp_path, ports, capsys):
-    assert demo(tmp_path, ports, "--duration", "4", "--push", "80@1:90") == 1
+    assert demo(tmp_path, ports, "--speed", "1.2", "--duration", "6", "--push", "80@3:90") == 1
     told = capsys.readouterr().out
     assert "fell at" in told and "BAD  the wearer fell" in told
     assert {path.name for path in tmp_path.iterdir()} == FILES
@@ -197,9 +209,9 @@ def test_emulate_gives_up_on_firmware_that_does_not_hear_it(ports, capsys, monke
 def test_emulate_ends_with_status_1_after_a_fall(ports, capsys):
     from saddlewalk.host import running_host
 
-    walk = ["emulate", "--clock", "lockstep", *ports, "--duration", "3"]
+    walk = ["emulate", "--clock", "lockstep", *ports, "--duration", "6"]
     with running_host(f"--can={ports[1]}", f"--lcm={ports[3]}", "--clock=lockstep"):
-        assert main([*walk, "--push", "80@1:270"]) == 1
+        assert main([*walk, "--push", "80@3:270"]) == 1
         assert "fell" in capsys.readouterr().out
         # The same firmware, still running, takes another wearer.
         assert main(walk) == 0
@@ -210,7 +222,7 @@ def test_demo_that_is_ended_keeps_its_logs_and_ends_the_firmware(tmp_path, ports
     script = Path(sys.executable).with_name("saddlewalk")
     program = [str(script), "demo", "--out", str(tmp_path), *ports]
     with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as process:
-        while "walking" not in process.stdout.readline():
+        while "starting" not in process.stdout.readline():
             assert process.poll() is None
         time.sleep(0.5)
         process.send_signal(by)
@@ -224,3 +236,12 @@ def test_demo_that_is_ended_keeps_its_logs_and_ends_the_firmware(tmp_path, ports
     log.close()
     with open_bus(ports[1]) as bus:
         assert bus.recv(3 * TICK_S) is None
+
+
+def test_a_walk_that_should_have_stopped_and_has_not_is_not_sound(tmp_path, ports, capsys):
+    schedule = tmp_path / "schedule.csv"
+    schedule.write_text("t_s,speed_m_s\n0,1.0\n4,0\n")
+    options = ["--schedule", str(schedule), "--duration"]
+    assert demo(tmp_path / "short", ports, *options, "5") == 1
+    assert "BAD  is stopping at the end, not standing" in capsys.readouterr().out
+    assert demo(tmp_path / "long", ports, *options, "12") == 0

@@ -69,6 +69,11 @@ static double min_jerk_reference(double s)
     return s * s * s * (10.0 + s * (6.0 * s - 15.0));
 }
 
+static double min_jerk_slope_reference(double s)
+{
+    return 30.0 * s * s * (1.0 - s) * (1.0 - s);
+}
+
 /** erf, by its series where that is exact to double precision and much faster than the library. */
 static double erf_reference(double x)
 {
@@ -215,6 +220,18 @@ static const promise_t MIN_JERK = {
     .relative_bound = NOT_STATED,
 };
 
+static const promise_t MIN_JERK_SLOPE = {
+    .function = saddle_min_jerk_slope,
+    .reference = min_jerk_slope_reference,
+    .lowest = 0.0f,
+    .highest = 1.0f,
+    .symmetry = NO_SYMMETRY,
+    .least_result = 0.0f,
+    .greatest_result = 1.875f,
+    .absolute_bound = 4.6e-7,
+    .relative_bound = 3.0e-7,
+};
+
 static void test_sin(void)
 {
     walk(&SIN);
@@ -271,6 +288,15 @@ static void test_min_jerk(void)
     expect_outside(saddle_min_jerk, 1.0f, 0.0f, 1.0f, 0.0f);
 }
 
+static void test_min_jerk_slope(void)
+{
+    walk(&MIN_JERK_SLOPE);
+    expect_result(saddle_min_jerk_slope, 0.0f, 0.0f);
+    expect_result(saddle_min_jerk_slope, 0.5f, 1.875f);
+    expect_result(saddle_min_jerk_slope, 1.0f, 0.0f);
+    expect_outside(saddle_min_jerk_slope, 1.0f, 0.0f, 0.0f, 0.0f);
+}
+
 static void test_clamp(void)
 {
     expect(saddle_clamp(-2.0f, -1.0f, 3.0f) == -1.0f, "below", -2.0f);
@@ -303,6 +329,7 @@ static const struct {
     {"erf_saturation", test_erf_saturation},
     {"exp", test_exp},
     {"min_jerk", test_min_jerk},
+    {"min_jerk_slope", test_min_jerk_slope},
     {"clamp", test_clamp},
     {"in_range", test_in_range},
 };

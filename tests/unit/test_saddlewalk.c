@@ -519,6 +519,106 @@ static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
     TEST_ASSERT_GREATER_THAN_INT(1000, refused);
 }
 
+static saddle_plan_t plan_at(uint64_t time_us)
+{
+    saddle_output_t at;
+    memset(&at, 0xA5, sizeof at);
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_plan_at(&context, time_us, &at.plan));
+    return at.plan;
+}
+
+static bool same_plan(const saddle_plan_t *a, const saddle_plan_t *b)
+{
+    saddle_output_t one = {.plan = *a};
+    saddle_output_t two = {.plan = *b};
+    return same_output(&one, &two);
+}
+
+/* Through start, changes, stop and restart: with any tick, and without a trace in the context. */
+static void test_plan_at_is_the_next_tick_s_plan_to_the_bit(void)
+{
+    uint32_t state = 47;
+    uint64_t t = 1000000;
+    input.measurement.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
+    for (int i = 0; i < 20000; i++) {
+        if (i % 50 == 0) {
+            config.ankle = (saddle_ankle_t)(random_bits(&state) % (uint32_t)SADDLE_ANKLE_COUNT);
+            input.command.speed_m_s =
+                random_bits(&state) % 3u == 0u ? 0.0f : random_in(&state, 0.0f, 2.0f);
+        }
+        if (i % 1000 == 0) {
+            saddle_init(&context, &config);
+        }
+        tick_at(t);
+        const saddle_context_t before = context;
+        t += random_bits(&state) % 200001u;
+        const saddle_plan_t foretold = plan_at(t);
+        TEST_ASSERT_EQUAL_MEMORY(&before, &context, sizeof context);
+        TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(t));
+        ASSERT_SAME_FLOAT(foretold.com_m.x, output.plan.com_m.x);
+        ASSERT_SAME_FLOAT(foretold.com_m.y, output.plan.com_m.y);
+        ASSERT_SAME_FLOAT(foretold.com_m.z, output.plan.com_m.z);
+        for (int side = 0; side < 2; side++) {
+            ASSERT_SAME_FLOAT(foretold.foot_m[side].x, output.plan.foot_m[side].x);
+            ASSERT_SAME_FLOAT(foretold.foot_m[side].y, output.plan.foot_m[side].y);
+            ASSERT_SAME_FLOAT(foretold.foot_m[side].z, output.plan.foot_m[side].z);
+        }
+    }
+}
+
+static void test_plan_at_of_a_steady_walk_is_the_next_tick_s_in_every_field(void)
+{
+    input.measurement.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
+    join();
+    tick_at(0);
+    for (uint64_t t = 80000; t < 8000000u; t += 80000u) {
+        const saddle_plan_t foretold = plan_at(t);
+        tick_at(t);
+        TEST_ASSERT_TRUE(same_plan(&foretold, &output.plan));
+    }
+}
+
+static void test_plan_at_beyond_its_span_is_refused(void)
+{
+    saddle_plan_t plan;
+    memset(&plan, 0xA5, sizeof plan);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME, saddle_plan_at(&context, 0, &plan)); /* no tick yet */
+    TEST_ASSERT_FALSE(plan.valid);
+    join();
+    tick_at(1000000);
+    const uint64_t end = 1000000u + saddle_planner_horizon_us(&context.planner);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME, saddle_plan_at(&context, 999999, &plan));
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_plan_at(&context, end, &plan));
+    TEST_ASSERT_EQUAL_UINT32(2, plan.step_count + (plan.phase % 2u == 0u ? 1u : 0u));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME, saddle_plan_at(&context, end + 1u, &plan));
+    TEST_ASSERT_FALSE(plan.valid);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME, saddle_plan_at(&context, UINT64_MAX, &plan));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_plan_at(NULL, end, &plan));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_plan_at(&context, end, NULL));
+    memset(&context, 0, sizeof context);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_UNINITIALISED, saddle_plan_at(&context, 0, &plan));
+}
+
+static void test_join_needs_a_walk(void)
+{
+    const saddle_command_t bad[] = {{SADDLE_COMMAND_STAND, 1.0f, 0.1f},
+                                    {SADDLE_COMMAND_WALK, 0.0f, 0.1f},
+                                    {SADDLE_COMMAND_WALK, -1.0f, 0.1f},
+                                    {SADDLE_COMMAND_WALK, NAN, 0.1f},
+                                    {SADDLE_COMMAND_WALK, 1.0f, INFINITY},
+                                    {7, 1.0f, 0.1f}};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_COMMAND, saddle_join(&context, &bad[i]));
+    }
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_join(NULL, &input.command));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_join(&context, NULL));
+    input.command.mode = SADDLE_COMMAND_STAND;
+    tick_at(0);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STANDING, output.plan.mode);
+    memset(&context, 0, sizeof context);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_UNINITIALISED, saddle_join(&context, &bad[0]));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -538,5 +638,9 @@ int main(void)
     RUN_TEST(test_contexts_are_independent_and_deterministic);
     RUN_TEST(test_planned_walk_has_the_paper_s_stability);
     RUN_TEST(test_any_bytes_in_any_configuration_give_a_sound_output);
+    RUN_TEST(test_plan_at_is_the_next_tick_s_plan_to_the_bit);
+    RUN_TEST(test_plan_at_of_a_steady_walk_is_the_next_tick_s_in_every_field);
+    RUN_TEST(test_plan_at_beyond_its_span_is_refused);
+    RUN_TEST(test_join_needs_a_walk);
     return UNITY_END();
 }

@@ -107,7 +107,7 @@ static bool is_erf(const walk_t *walk)
 
 /* ---- bounds -------------------------------------------------------------------------------- */
 
-/* The quarter that `now` has entered from `last`. At a foot via point the slope is continuous and
+/* The quarter that `now` has just entered. At a foot via point the slope is continuous and
  * the shapes differ in y; at a landing they meet in y and differ in slope by their amplitudes. */
 static quarter_t enter_quarter(const walk_t *walk, const saddle_plan_t *now)
 {
@@ -124,15 +124,13 @@ static quarter_t enter_quarter(const walk_t *walk, const saddle_plan_t *now)
     const double y =
         fabs((double)now->com_m.y - (double)now->foot_m[now->support].y);
     const double z = (double)now->com_m.z;
-    if (to_landing(now) && !steps(&walk->plan)) {
-        quarter.off_y = fabs(y - gap) + slack_m;
-        quarter.off_z = fabs(z - beside_z) + slack_m;
-    } else if (to_landing(now)) {
+    if (to_landing(now)) {
         quarter.off_y = fabs(y - gap) + slack_m;
         quarter.off_z = fabs(z - beside_z) + slack_m;
     } else {
         quarter.off_y = slack_m;
-        quarter.off_slope = 1e-3 + fabs(quarter.amplitude - old->amplitude) * 0.5 * PI / quarter.half;
+        quarter.off_slope =
+            1e-3 + fabs(quarter.amplitude - old->amplitude) * 0.5 * PI / quarter.half;
         quarter.off_z = fabs(z - (beside_z - quarter.vertical)) + slack_m;
     }
     return quarter;
@@ -268,7 +266,7 @@ static void keep_wider(bounds_t *bounds, const bounds_t *other)
     bounds->tail = fmax(bounds->tail, other->tail);
 }
 
-/* Over one query: of the quarter where it began and, past a via point, of the one where it ended. */
+/* Over one query: of the quarter where it began and, past a via point, of where it ended. */
 static bounds_t bounds_of_query(walk_t *walk, const saddle_plan_t *now)
 {
     const double speed = (double)fmaxf(walk->plan.speed_m_s, now->speed_m_s);
@@ -526,7 +524,7 @@ static bool same_point(const saddle_vec3_t *a, const saddle_vec3_t *b)
     return same_float(a->x, b->x) && same_float(a->y, b->y) && same_float(a->z, b->z);
 }
 
-/* The tick's plan is the one that was foretold for its time; its command may change what follows. */
+/* The tick has the plan that was foretold for its time; its command may change what follows. */
 static void check_tick(walk_t *walk, const saddle_plan_t *now)
 {
     const saddle_plan_t *was = &walk->plan;
@@ -658,14 +656,14 @@ static saddle_config_t random_config(walk_t *walk)
     do {
         config = saddle_config_default(random_factor(walk, 1.1, 2.1), 70.0f);
         config.ankle = (saddle_ankle_t)(random_bits(&walk->random) % SADDLE_ANKLE_COUNT);
-        config.acceleration_m_s2 = random_factor(walk, 0.2, 1.5);
+        config.acceleration_m_s2 = random_factor(walk, 0.2, 3.0);
         config.shift_time_s = random_factor(walk, 0.3, 1.5);
         config.swing_clearance_m = random_factor(walk, 0.0, 0.1);
         if (random_bits(&walk->random) % 3u == 0u) {
-            config.step_length_factor_left = random_factor(walk, 0.8, 1.2);
-            config.step_length_factor_right = random_factor(walk, 0.8, 1.2);
-            config.step_width_factor_left = random_factor(walk, 0.7, 1.5);
-            config.step_width_factor_right = random_factor(walk, 0.7, 1.5);
+            config.step_length_factor_left = random_factor(walk, 0.7, 1.3);
+            config.step_length_factor_right = random_factor(walk, 0.7, 1.3);
+            config.step_width_factor_left = random_factor(walk, 0.6, 1.9);
+            config.step_width_factor_right = random_factor(walk, 0.6, 1.9);
         }
     } while (saddle_config_check(&config) != NULL);
     return config;

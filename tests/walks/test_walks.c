@@ -1,7 +1,7 @@
 /**
  * Walks of many kinds and of great length: `test_walks CHECK [ARGUMENTS]`.
  *
- *   schedules [SEED [COUNT]]  random schedules of commands, watched at 1 kHz; alone, the campaign of
+ *   schedules [SEED [COUNT]]  random commands, watched at 1 kHz; alone, the campaign of
  *                             the tests; with a seed, that schedule (or COUNT from it on)
  *   day                       24 hours at random speeds against a twin in double precision
  *   constant                  an hour at each of 20 speeds against the closed form

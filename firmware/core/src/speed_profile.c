@@ -5,6 +5,9 @@
 /* What fixed point can count: more than any configuration accepts, but for a stop's last instants. */
 #define RATE_MAX_M_S2 15.9f
 
+/* A target that is not approached. */
+#define WAY_NEVER_M 1.0e9f
+
 static float magnitude(float x)
 {
     return x < 0.0f ? -x : x;
@@ -39,8 +42,11 @@ saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t 
 static float change_way_m(const saddle_speed_profile_t *profile, float speed_m_s, float target_m_s)
 {
     const float difference_m2_s2 = (target_m_s - speed_m_s) * (target_m_s + speed_m_s);
+    if (difference_m2_s2 == 0.0f) {
+        return 0.0f;
+    }
     return profile->rate_m_s2 > 0.0f ? magnitude(difference_m2_s2) / (2.0f * profile->rate_m_s2)
-                                     : 0.0f;
+                                     : WAY_NEVER_M;
 }
 
 static float speed_on_the_way_m_s(const saddle_speed_profile_t *profile, float speed_m_s,

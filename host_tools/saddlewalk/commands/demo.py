@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.commands.emulate import (
     add_walk_options,
-    command_of,
     events_printer,
+    schedule_of,
+    speeds_of,
     summary,
     wearer_of,
 )
@@ -23,7 +24,9 @@ if TYPE_CHECKING:
     from saddlewalk.exoskeleton import Exoskeleton
     from saddlewalk.recorder import Recorder
 
-PUSH_TIME_S = 8
+SPEEDS = [(0.0, 0.0), (1.0, 0.8), (7.0, 1.2), (16.0, 0.0)]
+DURATION_S = 22.0
+PUSH_TIME_S = 12
 PUSH_N_S_KG = 8.0 / 63.3
 PUSH_DIRECTION_DEG = 90.0
 REFRESH_S = 0.2
@@ -41,7 +44,12 @@ def add_parser(subparsers: Any) -> None:
         metavar="FOLDER",
         help="for the picture and the logs (default out/demo)",
     )
-    add_walk_options(parser, push=f"{PUSH_N_S_KG:.3f} N s/kg to the left at {PUSH_TIME_S} s")
+    add_walk_options(
+        parser,
+        pace=", ".join(f"{speed_m_s:g} m/s from {from_s:g} s" for from_s, speed_m_s in SPEEDS),
+        duration_s=DURATION_S,
+        push=f"{PUSH_N_S_KG:.3f} N s/kg to the left at {PUSH_TIME_S} s",
+    )
     parser.set_defaults(run=run)
 
 
@@ -57,6 +65,7 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.recorder import Recorder
 
     wearer = wearer_of(args, config, Noise())
+    speeds = speeds_of(args, SPEEDS)
     host_options = [f"--can={args.can}", f"--clock={args.clock}", *host_arguments(config)]
     host_options += [f"--lcm={args.lcm}"] if args.lcm else []
     with open_bus(args.can) as bus:
@@ -65,9 +74,11 @@ def run(args: argparse.Namespace) -> int:
             print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
             with _display(lcm) as display:
                 observers = [recorder, events_printer(wearer), display]
-                exoskeleton = Exoskeleton(bus, wearer, command_of(args), lcm, observers)
+                schedule = schedule_of(args, speeds)
+                exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers)
                 exoskeleton.run(args.clock, args.duration)
-    return _finish(args.out, wearer, exoskeleton, recorder)
+    to_stand = schedule(args.duration).speed_m_s == 0
+    return _finish(args.out, wearer, exoskeleton, recorder, to_stand)
 
 
 def _open_lcm(url: str | None) -> Any:
@@ -130,7 +141,11 @@ def _display(lcm: Any) -> Iterator[Any]:
 
 
 def _finish(
-    folder: Path, wearer: "Wearer", exoskeleton: "Exoskeleton", recorder: "Recorder"
+    folder: Path,
+    wearer: "Wearer",
+    exoskeleton: "Exoskeleton",
+    recorder: "Recorder",
+    to_stand: bool,
 ) -> int:
     """Draw the picture, read everything again, tell; 0 only if the walk was sound."""
     from saddlewalk.pictures import draw_walk
@@ -138,12 +153,23 @@ def _finish(
     picture = folder / "walk.png"
     draw_walk(recorder.csv_path, picture, wearer.pushes, wearer.body.foot_half_length_m)
     checks = _checks(wearer, exoskeleton, recorder)
+    if to_stand:
+        checks.insert(1, _standing(exoskeleton))
     print(summary(wearer, exoskeleton))
     for good, words in checks:
         print(f"  {'ok ' if good else 'BAD'}  {words}")
     for path in (picture, recorder.csv_path, recorder.can_path, recorder.lcm_path):
         print(f"  {path}  {path.stat().st_size / 1024:.0f} KiB")
     return 0 if all(good for good, _ in checks) else 1
+
+
+def _standing(exoskeleton: "Exoskeleton") -> tuple[bool, str]:
+    from saddlewalk.emulator import MODES, STANDING
+
+    if exoskeleton.mode == STANDING:
+        return True, "stands at the end"
+    last = "without a plan" if exoskeleton.mode is None else MODES[exoskeleton.mode]
+    return False, f"is {last} at the end, not standing"
 
 
 def _checks(

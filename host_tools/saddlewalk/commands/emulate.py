@@ -2,6 +2,7 @@
 
 import argparse
 import math
+from bisect import bisect_right
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
@@ -9,16 +10,20 @@ from saddlewalk.errors import UserError
 from saddlewalk.options import add_gait_options, number_in, whole_number_in
 
 if TYPE_CHECKING:
-    from saddlewalk.core import Command
     from saddlewalk.emulator import Noise, Push, Wearer
+    from saddlewalk.exoskeleton import Schedule
 
+Speeds = list[tuple[float, float]]  # (from this time on, s; speed, m/s, 0: stand), times from 0
+
+SPEED_M_S = 1.2
+SAME_TIME_S = 1e-6
 IMPULSE_MAX_N_S = 1000.0
 DURATION_MAX_S = 86400.0
 
 
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser("emulate", help="be the wearer of a running firmware")
-    add_walk_options(parser)
+    add_walk_options(parser, pace=f"{SPEED_M_S:g} m/s", duration_s=20.0)
     parser.add_argument(
         "--noise-scale",
         type=number_in(0, 100),
@@ -29,8 +34,10 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
 
 
-def add_walk_options(parser: argparse.ArgumentParser, push: str = "") -> None:
-    """What emulate and demo have in common; `push` tells the default of --push."""
+def add_walk_options(
+    parser: argparse.ArgumentParser, pace: str, duration_s: float, push: str = ""
+) -> None:
+    """What emulate and demo have in common; `pace` and `push` tell the defaults."""
     parser.add_argument(
         "--can", default="auto", metavar="SPEC", help="auto, socketcan:INTERFACE, udp[:GROUP:PORT]"
     )
@@ -41,14 +48,14 @@ def add_walk_options(parser: argparse.ArgumentParser, push: str = "") -> None:
         default="realtime",
         help="the wall clock, or as fast as the firmware answers (default realtime)",
     )
-    add_gait_options(parser, default_speed_m_s=1.2)
+    add_gait_options(parser, default_pace=pace)
     add_body_options(parser)
     parser.add_argument(
         "--duration",
         type=number_in(0.08, DURATION_MAX_S, "s"),
-        default=20.0,
+        default=duration_s,
         metavar="S",
-        help="of the walk (default 20)",
+        help=f"of the walk (default {duration_s:g})",
     )
     parser.add_argument(
         "--push",
@@ -91,11 +98,12 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.lcmbus import open_lcm
 
     wearer = wearer_of(args, load_config(args), Noise().scaled(args.noise_scale))
+    schedule = schedule_of(args, speeds_of(args, [(0.0, SPEED_M_S)]))
     lcm = open_lcm(args.lcm)
     with open_bus(args.can) as bus:
         print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
         events = events_printer(wearer)
-        exoskeleton = Exoskeleton(bus, wearer, command_of(args), lcm, [events])
+        exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, [events])
         exoskeleton.run(args.clock, args.duration)
     print(summary(wearer, exoskeleton))
     return 1 if wearer.fallen else 0
@@ -115,25 +123,42 @@ def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer"
     return Wearer(Body.of(config), noise, pushes=pushes, seed=args.seed)
 
 
-def command_of(args: argparse.Namespace) -> "Command":
+def speeds_of(args: argparse.Namespace, default: Speeds) -> Speeds:
+    """What --schedule or --speed asks for."""
+    from saddlewalk.schedule import read_schedule
+
+    if args.schedule:
+        return [(wish.from_s, wish.speed_m_s) for wish in read_schedule(args.schedule)]
+    return default if args.speed is None else [(0.0, args.speed)]
+
+
+def schedule_of(args: argparse.Namespace, speeds: Speeds) -> "Schedule":
     from saddlewalk.core import Command
 
-    return Command(args.speed, math.radians(args.hs_angle))
+    heel_strike_rad = math.radians(args.hs_angle)
+    starts_s = [from_s for from_s, _ in speeds]
+
+    def at(time_s: float) -> Command:
+        index = bisect_right(starts_s, time_s + SAME_TIME_S) - 1
+        return Command(speeds[index][1], heel_strike_rad)
+
+    return at
 
 
 def events_printer(wearer: "Wearer") -> Any:
-    """An observer that tells the start, each push and a fall, once each."""
+    """An observer that tells what the plan is doing, each push and a fall."""
+    from saddlewalk.emulator import MODES
     from saddlewalk.exoskeleton import Observer
 
     class Events(Observer):
         def __init__(self) -> None:
             self._due = sorted(wearer.pushes, key=lambda push: push.time_s)
-            self._walking = self._fallen = False
+            self._mode, self._fallen = None, False
 
         def tick(self, tick: Any, wearer: "Wearer") -> None:
-            if tick.plan and not self._walking:
-                self._walking = True
-                self._tell(tick, f"walking at {tick.plan.speed_m_s:.2f} m/s")
+            if tick.plan and tick.plan.mode != self._mode:
+                self._mode = tick.plan.mode
+                self._tell(tick, MODES[self._mode])
             while self._due and self._due[0].time_s < tick.time_s:
                 self._tell(tick, push_words(self._due.pop(0)))
             if wearer.fallen and not self._fallen:

@@ -1,7 +1,7 @@
 /** Fixed-point position and speed: sums of them are exact, so that nothing drifts in a day's walk.
  *
  *  A speed counts 2^-42 m/s and a position 2^-42 um, so that speed times microseconds is position.
- *  Range of both: +-2 m or m/s. No 64-bit division, no conversion between 64 bits and float. */
+ *  Range: +-2 m, +-4 m/s. No 64-bit division, no conversion between 64 bits and float. */
 #ifndef SADDLEWALK_SADDLE_FIXED_H
 #define SADDLEWALK_SADDLE_FIXED_H
 
@@ -15,10 +15,10 @@ saddle_fixed_t saddle_position_from_m(float value_m);
 /** Exact to 2^-10 um. */
 float saddle_position_to_m(saddle_fixed_t position);
 
-/** To the nearest nanometre. */
+/** To the nearest nanometre; position >= 0. */
 int64_t saddle_position_to_nm(saddle_fixed_t position);
 
-/** |value_m_s| < 2; exact to 2^-42 m/s. */
+/** |value_m_s| < 4; exact to 2^-42 m/s. */
 saddle_fixed_t saddle_speed_from_m_s(float value_m_s);
 
 float saddle_speed_to_m_s(saddle_fixed_t speed);
@@ -27,7 +27,7 @@ float saddle_speed_to_m_s(saddle_fixed_t speed);
  *  it, for a rate that is a multiple of 2^-27. */
 saddle_fixed_t saddle_speed_change(float rate_m_s2, uint32_t dt_us);
 
-/** The way at a constant speed >= 0 in time_s in [0, 1]; exact to 2^-41 m. */
+/** The way at a constant speed >= 0 in time_s in [0, 2), less than 2 m; exact to 2^-41 m. */
 saddle_fixed_t saddle_speed_times_s(saddle_fixed_t speed, float time_s);
 
 #endif

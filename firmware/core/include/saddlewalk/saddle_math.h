@@ -58,7 +58,10 @@ bool saddle_in_range(float x, float lo, float hi);
  */
 float saddle_min_jerk(float s);
 
-/** Derivative of saddle_min_jerk(), 30 s^2 (1 - s)^2; 0 outside [0, 1]. */
+/**
+ * Derivative of saddle_min_jerk(), 30 s^2 (1 - s)^2; 0 outside [0, 1] and for NaN.
+ * Error at most 4.6e-7, relative 3.0e-7.
+ */
 float saddle_min_jerk_slope(float s);
 
 #endif
