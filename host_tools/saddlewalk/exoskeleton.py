@@ -16,7 +16,7 @@ from saddlewalk.wire import Sender
 
 WAKE_UP_S = 0.01  # realtime: measurements at 100 Hz
 SILENCE_S = 3.0
-START_TICKS = 125  # of standing before a walk is given up: 10 s
+START_TICKS = 125  # that do not do as commanded, before a walk is given up: 10 s
 RESEND_S = 0.25
 
 MODE_STAND, MODE_WALK = 0, 1
@@ -97,6 +97,7 @@ class Exoskeleton:
         self._observers = tuple(observers)
         self._sender = Sender()
         self._begun = False
+        self._unheeded = 0  # ticks in a row
         self._pushed_n_s = 0j
 
     def run(self, clock: str, duration_s: float) -> None:
@@ -176,7 +177,8 @@ class Exoskeleton:
         self._begun = self._begun or (plan is not None and plan.mode == STANDING)
         plan = plan if self._begun else None
         self.ticks += 1
-        if self._wearer.time_s == 0 and self.ticks > START_TICKS:
+        self._unheeded = self._unheeded + 1 if self._is_unheeded(plan) else 0
+        if self._unheeded > START_TICKS:
             raise UserError(
                 f"the firmware on {self._bus.channel_info} answers but does not do as commanded: "
                 "give both the same --clock and --lcm"
@@ -187,6 +189,11 @@ class Exoskeleton:
         tick = Tick(self._wearer.time_s, messages, plan)
         for observer in self._observers:
             observer.tick(tick, self._wearer)
+
+    def _is_unheeded(self, plan: Plan | None) -> bool:
+        """The firmware does not stand before the walk, or stands though it is to walk."""
+        to_walk = self._command()[0] == MODE_WALK
+        return not self._begun or (to_walk and plan is not None and plan.mode == STANDING)
 
     def _advance(self, steps: int) -> None:
         for _ in range(steps):

@@ -38,8 +38,9 @@ static uint32_t update(void)
 {
     memset(&scores, 0xA5, sizeof scores);
     scores.bos.defined = false; /* any bytes but in a bool, where only 0 and 1 are values */
-    return saddle_supervisor_update(&supervisor, &config, &body, &measured, DT_S, PLANNED_M_S,
-                                    &scores);
+    const uint32_t faults = saddle_supervisor_judge(&config, &measured);
+    return saddle_supervisor_update(&supervisor, &config, &body, &measured, faults, DT_S,
+                                    PLANNED_M_S, &scores);
 }
 
 static const uint32_t UNTIL_STEP = (uint32_t)SADDLE_VALID_ALL & ~(uint32_t)SADDLE_VALID_STEP;
@@ -312,7 +313,7 @@ static void test_speed_that_cannot_be_walked_is_said(void)
 
 static void test_nobody_walking_and_nothing_planned_has_no_speed(void)
 {
-    saddle_supervisor_update(&supervisor, &config, &body, &measured, DT_S, 0.0f, &scores);
+    saddle_supervisor_update(&supervisor, &config, &body, &measured, 0, DT_S, 0.0f, &scores);
     TEST_ASSERT_EQUAL_HEX32(
         SADDLE_VALID_MOS_COM | SADDLE_VALID_MOS_XCOM | SADDLE_VALID_GRAVITY, scores.valid);
     ASSERT_SAME_FLOAT(0.0f, scores.v_comp_m_s);
@@ -322,7 +323,7 @@ static void test_walk_goes_on_having_a_speed_when_nothing_is_planned(void)
 {
     strike_with(SADDLE_LEFT);
     strike_with(SADDLE_RIGHT);
-    saddle_supervisor_update(&supervisor, &config, &body, &measured, DT_S, 0.0f, &scores);
+    saddle_supervisor_update(&supervisor, &config, &body, &measured, 0, DT_S, 0.0f, &scores);
     TEST_ASSERT_EQUAL_HEX32(SADDLE_VALID_ALL, scores.valid);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.1, scores.v_comp_m_s);
 }
