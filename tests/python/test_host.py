@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import os
 import random
 import signal
 import subprocess
@@ -39,7 +40,8 @@ class Host:
         self.spec = private_udp()
         command = [paths.built("bin/saddlewalk-host"), "--can", self.spec, *options]
         pipe = subprocess.PIPE
-        self.process = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True)
+        leaks = os.environ | {"ASAN_OPTIONS": "detect_leaks=1"}  # for a sanitized build
+        self.process = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, env=leaks)
         self.first_line = self.process.stdout.readline()
         assert self.process.stdout.readline() == "ready\n"
         self.bus = open_bus(self.spec)
