@@ -5,9 +5,6 @@
 /* The largest float below 2 pi. */
 #define THETA_MAX_RAD 6.28318500f
 
-/* Feet further apart along x than this share of the shortest half step stand as in a step. */
-#define STAGGER_SHARE 1.0f
-
 /* Feet that a walk can start from are at least this far apart across. */
 #define START_WIDTH_MIN_M 0.05f
 
@@ -47,6 +44,16 @@ static float limited(float value, float min, float max, saddle_limit_t limit, ui
     return inside;
 }
 
+static float feasible_speed_m_s(const saddle_body_t *body, float wanted_m_s, uint32_t *limits)
+{
+    const float ceiling_m_s = body->speed_ceiling_m_s;
+    if (wanted_m_s < 0.0f || wanted_m_s >= ceiling_m_s) {
+        *limits |= (uint32_t)SADDLE_LIMIT_SPEED;
+        return wanted_m_s < 0.0f ? 0.0f : SADDLE_CEILING_MARGIN * ceiling_m_s;
+    }
+    return limited(wanted_m_s, SADDLE_SPEED_FLOOR_M_S, ceiling_m_s, SADDLE_LIMIT_SPEED, limits);
+}
+
 /* The wanted speed and angle, feasible. */
 static uint32_t obey(saddle_planner_t *planner, const saddle_config_t *config,
                      const saddle_body_t *body, const saddle_command_t *command)
@@ -56,16 +63,7 @@ static uint32_t obey(saddle_planner_t *planner, const saddle_config_t *config,
         planner->speed_m_s = 0.0f;
         return 0;
     }
-    planner->speed_m_s = limited(command->speed_m_s, 0.0f, body->speed_ceiling_m_s,
-                                 SADDLE_LIMIT_SPEED, &limits);
-    if (planner->speed_m_s > 0.0f) {
-        planner->speed_m_s = limited(planner->speed_m_s, SADDLE_SPEED_FLOOR_M_S,
-                                     body->speed_ceiling_m_s, SADDLE_LIMIT_SPEED, &limits);
-    }
-    if (command->speed_m_s >= body->speed_ceiling_m_s) {
-        planner->speed_m_s = SADDLE_CEILING_MARGIN * body->speed_ceiling_m_s;
-        limits |= (uint32_t)SADDLE_LIMIT_SPEED;
-    }
+    planner->speed_m_s = feasible_speed_m_s(body, command->speed_m_s, &limits);
     planner->heel_strike_rad = limited(command->heel_strike_rad, 0.0f, config->heel_strike_max_rad,
                                        SADDLE_LIMIT_HEEL_STRIKE, &limits);
     return limits;
@@ -117,12 +115,12 @@ static uint32_t stand_on(saddle_planner_t *planner, const saddle_config_t *confi
     return 0;
 }
 
-/* From standing: feet a step apart are midway through it; else the weight goes to the stance leg. */
+/* From standing: feet further apart than the shortest half step are midway through a step; else the
+ * weight goes to the stance leg. */
 static void begin_start(saddle_planner_t *planner, const saddle_config_t *config)
 {
     const bool left = planner->cycle.quarter.stance == SADDLE_LEFT;
-    const float stagger_m = -planner->other_m.x;
-    const bool midway = stagger_m > STAGGER_SHARE * config->half_step_intercept_m;
+    const bool midway = -planner->other_m.x > config->half_step_intercept_m;
     const saddle_quarter_t beside =
         saddle_quarter(config, planner->cycle.quarter.stance, config->half_step_intercept_m,
                        left ? -planner->other_m.y : planner->other_m.y, 0.0f);
@@ -238,16 +236,16 @@ static uint32_t advance_shift(saddle_planner_t *planner, const saddle_config_t *
     return rest_us;
 }
 
+static bool before_landing(const saddle_cycle_t *cycle)
+{
+    return cycle->phase % 2u == 0u;
+}
+
 /* Way to the place where a stop can end: the foot via point after the next landing. */
 static float stopping_way_m(const saddle_cycle_t *cycle)
 {
     const float way_m = saddle_cycle_way_to_via_point_m(cycle);
-    return cycle->phase % 2u == 0u ? way_m + cycle->quarter.length_m : way_m;
-}
-
-static bool before_landing(const saddle_cycle_t *cycle)
-{
-    return cycle->phase % 2u == 0u;
+    return before_landing(cycle) ? way_m + cycle->quarter.length_m : way_m;
 }
 
 /* The speed at which a stop goes on until it brakes: slow, feasible, and such that every step is
