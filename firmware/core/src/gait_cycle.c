@@ -20,24 +20,14 @@
 /* The CoM stays within this share of the pendulum's length from the stance foot, squared. */
 #define REACH_SHARE 0.8f
 
-static bool towards_saddle(const saddle_cycle_t *cycle)
+bool saddle_cycle_before_landing(const saddle_cycle_t *cycle)
 {
     return cycle->phase % 2u == 0u;
-}
-
-static saddle_side_t other_side(saddle_side_t side)
-{
-    return side == SADDLE_LEFT ? SADDLE_RIGHT : SADDLE_LEFT;
 }
 
 static saddle_side_t stance_of_phase(uint8_t phase)
 {
     return phase == 0u || phase == 3u ? SADDLE_LEFT : SADDLE_RIGHT;
-}
-
-static float magnitude(float x)
-{
-    return x < 0.0f ? -x : x;
 }
 
 static saddle_sample_t sum(saddle_sample_t a, saddle_sample_t b)
@@ -73,7 +63,7 @@ static void reshape(saddle_cycle_t *cycle, const saddle_body_t *body, saddle_qua
                     saddle_sample_t lateral, saddle_sample_t vertical)
 {
     const float x_m = saddle_position_to_m(cycle->position);
-    const float rest_m = towards_saddle(cycle) ? quarter.length_m - x_m : -x_m;
+    const float rest_m = saddle_cycle_before_landing(cycle) ? quarter.length_m - x_m : -x_m;
     cycle->quarter = quarter;
     cycle->lateral = saddle_blend(lateral, lateral_reference(cycle, x_m), x_m, rest_m);
     cycle->vertical = saddle_blend(vertical, vertical_reference(cycle, body, x_m), x_m, rest_m);
@@ -88,10 +78,10 @@ static void pass_foot(saddle_cycle_t *cycle, const saddle_config_t *config,
     const saddle_sample_t vertical = vertical_at(cycle, body, 0.0f);
     cycle->phase = (uint8_t)((cycle->phase + 1u) % 4u);
     cycle->stride_count += cycle->phase == 0u ? 1u : 0u;
-    cycle->quarter_length = saddle_half_step(config, other_side(stance), speed);
+    cycle->quarter_length = saddle_half_step(config, saddle_other_side(stance), speed);
     reshape(cycle, body,
             saddle_quarter(config, stance, saddle_position_to_m(cycle->quarter_length),
-                           magnitude(cycle->swing.line_y_m), saddle_speed_to_m_s(speed)),
+                           saddle_magnitude(cycle->swing.line_y_m), saddle_speed_to_m_s(speed)),
             lateral, vertical);
 }
 
@@ -112,10 +102,10 @@ static float swing_line_y_m(const saddle_cycle_t *cycle, const saddle_config_t *
 static void lift_off(saddle_cycle_t *cycle, const saddle_config_t *config, saddle_vec2_t lifted_m,
                      float speed_m_s)
 {
-    const saddle_side_t foot = other_side(cycle->quarter.stance);
+    const saddle_side_t foot = saddle_other_side(cycle->quarter.stance);
     const float x_m = saddle_position_to_m(cycle->position);
     saddle_swing_t *swing = &cycle->swing;
-    swing->lift_progress = towards_saddle(cycle) ? 0.5f : 0.0f;
+    swing->lift_progress = saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f;
     swing->land_progress = cycle->last_swing ? 0.5f : 1.0f;
     swing->clearance_m = config->swing_clearance_m;
     swing->line_y_m = swing_line_y_m(cycle, config, foot, speed_m_s);
@@ -147,8 +137,8 @@ static void pass_saddle(saddle_cycle_t *cycle, const saddle_config_t *config,
     cycle->heel_strike_rad = cycle->next_heel_strike_rad;
     cycle->next_heel_strike_rad = heel_strike_rad;
     reshape(cycle, body,
-            saddle_quarter(config, other_side(cycle->quarter.stance), length_m,
-                           magnitude(step_y_m), speed_m_s),
+            saddle_quarter(config, saddle_other_side(cycle->quarter.stance), length_m,
+                           saddle_magnitude(step_y_m), speed_m_s),
             lateral, vertical);
     lift_off(cycle, config, lifted_m, speed_m_s);
 }
@@ -168,15 +158,16 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_config_t *config,
     cycle->lift_pitch_rad = 0.0f;
     cycle->last_step_m.x = -start->other_m.x;
     cycle->last_step_m.y = -start->other_m.y;
-    cycle->quarter_length = beside ? saddle_half_step(config, other_side(stance), start->speed)
-                                   : saddle_position_from_m(-0.5f * start->other_m.x);
+    cycle->quarter_length =
+        beside ? saddle_half_step(config, saddle_other_side(stance), start->speed)
+               : saddle_position_from_m(-0.5f * start->other_m.x);
     cycle->position = beside ? 0 : -cycle->quarter_length;
     cycle->quarter = saddle_quarter(config, stance, saddle_position_to_m(cycle->quarter_length),
-                                    magnitude(start->other_m.y), speed_m_s);
+                                    saddle_magnitude(start->other_m.y), speed_m_s);
     lift_off(cycle, config, start->other_m, speed_m_s);
     if (beside) {
         cycle->quarter = saddle_quarter(config, stance, cycle->quarter.length_m,
-                                        magnitude(cycle->swing.line_y_m), speed_m_s);
+                                        saddle_magnitude(cycle->swing.line_y_m), speed_m_s);
     }
     reshape(cycle, body, cycle->quarter, lateral, vertical);
     if (start->under_way) {
@@ -188,14 +179,14 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_config_t *config,
 
 float saddle_cycle_way_to_via_point_m(const saddle_cycle_t *cycle)
 {
-    return towards_saddle(cycle) ? saddle_position_to_m(cycle->quarter_length - cycle->position)
-                                 : saddle_position_to_m(-cycle->position);
+    const saddle_fixed_t end = saddle_cycle_before_landing(cycle) ? cycle->quarter_length : 0;
+    return saddle_position_to_m(end - cycle->position);
 }
 
 /* Time after which a last swing has come to rest beside the stance foot. */
 static bool comes_to_rest(const saddle_cycle_t *cycle, uint32_t dt_us, uint32_t *rest_us)
 {
-    if (!cycle->last_swing || towards_saddle(cycle) || cycle->profile.target != 0) {
+    if (!cycle->last_swing || saddle_cycle_before_landing(cycle) || cycle->profile.target != 0) {
         return false;
     }
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
@@ -223,23 +214,23 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_config_t *conf
     float way_m = 0.0f;
     saddle_fixed_t way = saddle_profile_advance(&cycle->profile, dt_us);
     for (int i = 0; i < VIA_POINTS_A_TICK; i++) {
-        const saddle_fixed_t end = towards_saddle(cycle) ? cycle->quarter_length : 0;
+        const saddle_fixed_t end = saddle_cycle_before_landing(cycle) ? cycle->quarter_length : 0;
         const saddle_fixed_t to_end = end - cycle->position;
-        if (way < to_end || (cycle->last_swing && !towards_saddle(cycle))) {
+        if (way < to_end || (cycle->last_swing && !saddle_cycle_before_landing(cycle))) {
             break;
         }
         way -= to_end;
         way_m += saddle_position_to_m(to_end);
         cycle->position = end;
         const saddle_fixed_t speed = saddle_profile_speed_after(&before, way_m);
-        if (towards_saddle(cycle)) {
+        if (saddle_cycle_before_landing(cycle)) {
             pass_saddle(cycle, config, body, speed, heel_strike_rad);
         } else {
             pass_foot(cycle, config, body, speed);
         }
     }
     cycle->position += way;
-    if (!towards_saddle(cycle) && cycle->position > 0) {
+    if (!saddle_cycle_before_landing(cycle) && cycle->position > 0) {
         cycle->position = 0; /* a last swing stays beside the stance foot */
     }
     return 0;
@@ -271,7 +262,7 @@ static void redirect_swing(saddle_cycle_t *cycle, const saddle_config_t *config,
     const float fade = 1.0f - saddle_min_jerk(2.0f * air_after_landing(cycle, x_m));
     saddle_swing_t *swing = &cycle->swing;
     swing->line_y_m =
-        swing_line_y_m(cycle, config, other_side(cycle->quarter.stance), speed_m_s);
+        swing_line_y_m(cycle, config, saddle_other_side(cycle->quarter.stance), speed_m_s);
     const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral_reference(cycle, x_m));
     swing->offset_m.x = (foot_m.x - line.value) / fade;
     swing->offset_m.y = (foot_m.y - swing->line_y_m) / fade;
@@ -287,7 +278,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
     const float x_m = old_x_m - dx_m;
     saddle_sample_t lateral = lateral_at(cycle, old_x_m);
     lateral.value -= dy_m;
-    if (towards_saddle(cycle) || -2.0f * old_x_m < cycle->quarter.length_m ||
+    if (saddle_cycle_before_landing(cycle) || -2.0f * old_x_m < cycle->quarter.length_m ||
         air_after_landing(cycle, old_x_m) > LANDING_AIR_MAX ||
         x_m < LANDING_STRETCH_MAX * old_x_m ||
         !landing_usable(cycle, config, body, step_m, (saddle_vec2_t){x_m, lateral.value})) {
@@ -304,8 +295,8 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
     cycle->last_step_m = step_m;
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
     reshape(cycle, body,
-            saddle_quarter(config, stance, length_m, magnitude(step_m.y), speed_m_s), lateral,
-            vertical);
+            saddle_quarter(config, stance, length_m, saddle_magnitude(step_m.y), speed_m_s),
+            lateral, vertical);
     redirect_swing(cycle, config, swing_m, speed_m_s);
     return true;
 }
@@ -316,7 +307,7 @@ static void erf_height(const saddle_cycle_t *cycle, const saddle_config_t *confi
                        saddle_pose_t *pose)
 {
     const float shaped_m_s = speed_m_s > SPEED_MIN_M_S ? speed_m_s : SPEED_MIN_M_S;
-    const bool before = towards_saddle(cycle);
+    const bool before = saddle_cycle_before_landing(cycle);
     const saddle_transition_t transition =
         saddle_transition(config, body, &cycle->quarter, shaped_m_s,
                           before ? cycle->next_heel_strike_rad : cycle->heel_strike_rad);
@@ -339,7 +330,7 @@ static void cycloid_height(const saddle_cycle_t *cycle, const saddle_config_t *c
     pose->com_m.z = vertical.value;
     pose->com_velocity_m_s.z = vertical.slope * speed_m_s;
     const float leg_m = sqrtf(com->x * com->x + com->y * com->y + com->z * com->z);
-    pose->ankle = saddle_ankle_for_leg(config, body, leg_m, towards_saddle(cycle),
+    pose->ankle = saddle_ankle_for_leg(config, body, leg_m, saddle_cycle_before_landing(cycle),
                                        &pose->ankle_limited);
 }
 
@@ -366,7 +357,7 @@ static float landing_angle_rad(const saddle_cycle_t *cycle, const saddle_config_
 static float swing_pitch_rad(const saddle_cycle_t *cycle, const saddle_config_t *config,
                              const saddle_body_t *body, float progress, float speed_m_s)
 {
-    if (!towards_saddle(cycle)) {
+    if (!saddle_cycle_before_landing(cycle)) {
         return cycle->lift_pitch_rad * (1.0f - saddle_min_jerk(2.0f * progress));
     }
     return -landing_angle_rad(cycle, config, body, speed_m_s) *
@@ -380,8 +371,8 @@ saddle_pose_t saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config
     const float x_m = saddle_position_to_m(cycle->position);
     const float length_m = cycle->quarter.length_m;
     const saddle_sample_t lateral = lateral_at(cycle, x_m);
-    const float since_via_m = towards_saddle(cycle) ? x_m : length_m + x_m;
-    const float to_saddle_m = towards_saddle(cycle) ? length_m - x_m : length_m + x_m;
+    const float since_via_m = saddle_cycle_before_landing(cycle) ? x_m : length_m + x_m;
+    const float to_saddle_m = saddle_cycle_before_landing(cycle) ? length_m - x_m : length_m + x_m;
     saddle_pose_t pose;
     pose.progress = saddle_clamp(since_via_m / length_m, 0.0f, 1.0f);
     pose.com_m.x = x_m;
@@ -393,12 +384,13 @@ saddle_pose_t saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config
     } else {
         erf_height(cycle, config, body, to_saddle_m, speed_m_s, &pose);
     }
-    const float swing_progress = 0.5f * pose.progress + (towards_saddle(cycle) ? 0.5f : 0.0f);
+    const float swing_progress =
+        0.5f * pose.progress + (saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f);
     pose.swing = saddle_foot_swing(&cycle->swing, swing_progress, x_m,
                                    lateral_reference(cycle, x_m), speed_m_s,
                                    0.5f * speed_m_s / length_m);
     pose.stance_pitch_rad =
-        towards_saddle(cycle) ? pose.ankle.toe_off_rad : -pose.ankle.heel_strike_rad;
+        saddle_cycle_before_landing(cycle) ? pose.ankle.toe_off_rad : -pose.ankle.heel_strike_rad;
     pose.swing_pitch_rad = swing_pitch_rad(cycle, config, body, swing_progress, speed_m_s);
     return pose;
 }

@@ -6,7 +6,8 @@
 /* Below this speed A_y is the tangency value d_SW / pi, [E7]. */
 #define TANGENCY_SPEED_M_S 0.5f
 
-/* Narrower steps are taken as this wide: the swing foot's line needs the CoM off the stance foot. */
+/* Narrower steps are taken as this wide: the swing foot's line needs the CoM off the
+ * stance foot. */
 #define WIDTH_MIN_M 0.02f
 
 static float half_step_m(const saddle_config_t *config, float speed_m_s)
@@ -86,4 +87,9 @@ saddle_step_bounds_t saddle_step_bounds(const saddle_config_t *config, const sad
     bounds.feasible = speed_m_s > 0.0f && bounds.min_m < bounds.reference_m &&
                       bounds.reference_m < bounds.max_m;
     return bounds;
+}
+
+saddle_side_t saddle_other_side(saddle_side_t side)
+{
+    return side == SADDLE_LEFT ? SADDLE_RIGHT : SADDLE_LEFT;
 }

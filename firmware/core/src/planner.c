@@ -19,11 +19,6 @@
 #define HORIZON_MAX_S 5.0f
 #define STANDING_HORIZON_US 500000u
 
-static saddle_side_t other_side(saddle_side_t side)
-{
-    return side == SADDLE_LEFT ? SADDLE_RIGHT : SADDLE_LEFT;
-}
-
 bool saddle_command_usable(const saddle_command_t *command)
 {
     const float finite_max = 1.0e6f;
@@ -105,7 +100,7 @@ static uint32_t stand_on(saddle_planner_t *planner, const saddle_config_t *confi
     }
     const saddle_side_t front = right.x > left.x ? SADDLE_RIGHT : SADDLE_LEFT;
     const saddle_vec2_t stance = feet->cop_m[front];
-    const saddle_vec2_t other = feet->cop_m[other_side(front)];
+    const saddle_vec2_t other = feet->cop_m[saddle_other_side(front)];
     planner->cycle.quarter.stance = front;
     planner->cycle.stance_y_m = 0.5f * (stance.y - other.y);
     planner->other_m.x = other.x - stance.x;
@@ -236,16 +231,11 @@ static uint32_t advance_shift(saddle_planner_t *planner, const saddle_config_t *
     return rest_us;
 }
 
-static bool before_landing(const saddle_cycle_t *cycle)
-{
-    return cycle->phase % 2u == 0u;
-}
-
 /* Way to the place where a stop can end: the foot via point after the next landing. */
 static float stopping_way_m(const saddle_cycle_t *cycle)
 {
     const float way_m = saddle_cycle_way_to_via_point_m(cycle);
-    return before_landing(cycle) ? way_m + cycle->quarter.length_m : way_m;
+    return saddle_cycle_before_landing(cycle) ? way_m + cycle->quarter.length_m : way_m;
 }
 
 /* The speed at which a stop goes on until it brakes: slow, feasible, and such that every step is
@@ -262,7 +252,7 @@ static void choose_last_swing(saddle_planner_t *planner, const saddle_config_t *
                               float speed_m_s)
 {
     saddle_cycle_t *cycle = &planner->cycle;
-    if (before_landing(cycle)) {
+    if (saddle_cycle_before_landing(cycle)) {
         const float way_m = stopping_way_m(cycle);
         cycle->last_swing = speed_m_s * speed_m_s <= 2.0f * config->acceleration_m_s2 * way_m;
         planner->braking = planner->braking && cycle->last_swing;
@@ -303,7 +293,7 @@ static void choose_profile(saddle_planner_t *planner, const saddle_config_t *con
                            const saddle_body_t *body)
 {
     saddle_cycle_t *cycle = &planner->cycle;
-    const bool must_end = cycle->last_swing && !before_landing(cycle);
+    const bool must_end = cycle->last_swing && !saddle_cycle_before_landing(cycle);
     if (planner->speed_m_s > 0.0f && !must_end) {
         if (planner->mode == (uint8_t)SADDLE_MODE_STOPPING) {
             planner->mode = (uint8_t)SADDLE_MODE_WALKING;
@@ -358,7 +348,7 @@ uint32_t saddle_planner_horizon_us(const saddle_planner_t *planner)
     if (planner->shifting || planner->mode == (uint8_t)SADDLE_MODE_STANDING) {
         return STANDING_HORIZON_US;
     }
-    const float step_m = before_landing(cycle) ? 2.0f : 3.0f;
+    const float step_m = saddle_cycle_before_landing(cycle) ? 2.0f : 3.0f;
     const float way_m = saddle_clamp(
         saddle_cycle_way_to_via_point_m(cycle) + step_m * cycle->quarter.length_m, 0.0f, WAY_MAX_M);
     const float time_s = saddle_profile_time_s(&cycle->profile, way_m);
@@ -371,14 +361,14 @@ static uint32_t take_landing(saddle_planner_t *planner, const saddle_config_t *c
 {
     const saddle_side_t stance = planner->cycle.quarter.stance;
     const saddle_vec2_t *landed = &feet->cop_m[stance];
-    const saddle_vec2_t *rear = &feet->cop_m[other_side(stance)];
+    const saddle_vec2_t *rear = &feet->cop_m[saddle_other_side(stance)];
     const bool waiting = planner->landing_open && !planner->shifting &&
-                         !before_landing(&planner->cycle);
+                         !saddle_cycle_before_landing(&planner->cycle);
     if (!waiting || !feet->known || !feet->contact[stance]) {
         return 0;
     }
     planner->landing_open = false;
-    if (!feet->contact[other_side(stance)]) {
+    if (!feet->contact[saddle_other_side(stance)]) {
         return 0;
     }
     const saddle_vec2_t step_m = {landed->x - rear->x, landed->y - rear->y};
@@ -430,7 +420,7 @@ uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_config_t 
 static float half_step_to_landing_m(const saddle_cycle_t *cycle, const saddle_config_t *config,
                                     float way_m)
 {
-    if (before_landing(cycle)) {
+    if (saddle_cycle_before_landing(cycle)) {
         return cycle->quarter.length_m;
     }
     if (cycle->last_swing) {
@@ -438,7 +428,7 @@ static float half_step_to_landing_m(const saddle_cycle_t *cycle, const saddle_co
     }
     const saddle_fixed_t speed = saddle_profile_speed_after(&cycle->profile, way_m);
     return saddle_position_to_m(
-        saddle_half_step(config, other_side(cycle->quarter.stance), speed));
+        saddle_half_step(config, saddle_other_side(cycle->quarter.stance), speed));
 }
 
 /* A last swing brakes evenly, to rest at its end: twice the time that its speed would take. */
@@ -456,13 +446,13 @@ static void write_step_events(const saddle_cycle_t *cycle, const saddle_config_t
     const float half_step_m = half_step_to_landing_m(cycle, config, way_m);
     plan->landing_m.x = 2.0f * half_step_m;
     plan->landing_m.y = cycle->stance_y_m + cycle->swing.line_y_m;
-    if (cycle->last_swing && !before_landing(cycle) && cycle->profile.target == 0) {
+    if (cycle->last_swing && !saddle_cycle_before_landing(cycle) && cycle->profile.target == 0) {
         plan->time_to_via_point_s = time_of_last_swing_s(cycle, way_m);
         plan->time_to_heel_strike_s = SADDLE_TIME_MAX_S;
         plan->time_to_toe_off_s = SADDLE_TIME_MAX_S;
         return;
     }
-    const float landing_m = before_landing(cycle) ? way_m : way_m + half_step_m;
+    const float landing_m = saddle_cycle_before_landing(cycle) ? way_m : way_m + half_step_m;
     const float lead_m =
         config->cop_range_m * (1.0f - saddle_cos(cycle->next_heel_strike_rad));
     const float heel_m = landing_m > lead_m ? landing_m - lead_m : 0.0f;
@@ -510,7 +500,7 @@ static void write_standing(const saddle_planner_t *planner, const saddle_config_
     plan->com_velocity_m_s.z =
         -(near_m.x * plan->com_velocity_m_s.x + near_m.y * plan->com_velocity_m_s.y) / z_m;
     plan->foot_m[stance] = (saddle_vec3_t){0.0f, planner->cycle.stance_y_m, 0.0f};
-    plan->foot_m[other_side(stance)] = (saddle_vec3_t){
+    plan->foot_m[saddle_other_side(stance)] = (saddle_vec3_t){
         planner->other_m.x, planner->cycle.stance_y_m + planner->other_m.y, 0.0f};
     plan->leg_length_m = leg_m;
     plan->landing_m.x = planner->other_m.x;
@@ -530,10 +520,10 @@ static uint32_t write_walking(const saddle_planner_t *planner, const saddle_conf
     plan->com_m.y += cycle->stance_y_m;
     plan->com_velocity_m_s = pose.com_velocity_m_s;
     plan->foot_m[stance] = (saddle_vec3_t){0.0f, cycle->stance_y_m, 0.0f};
-    plan->foot_m[other_side(stance)] = pose.swing.position_m;
-    plan->foot_m[other_side(stance)].y += cycle->stance_y_m;
+    plan->foot_m[saddle_other_side(stance)] = pose.swing.position_m;
+    plan->foot_m[saddle_other_side(stance)].y += cycle->stance_y_m;
     plan->foot_pitch_rad[stance] = pose.stance_pitch_rad;
-    plan->foot_pitch_rad[other_side(stance)] = pose.swing_pitch_rad;
+    plan->foot_pitch_rad[saddle_other_side(stance)] = pose.swing_pitch_rad;
     plan->swing_velocity_m_s = pose.swing.velocity_m_s;
     plan->leg_length_m = pose.ankle.leg_length_m;
     plan->knee_flexion_m = pose.ankle.knee_flexion_m;

@@ -45,7 +45,7 @@ static const float EXP_LOWEST = -87.0f;
 static const float EXP_HIGHEST = 88.0f;
 static const float ERF_SATURATION = 4.0f;
 
-static float magnitude(float x)
+float saddle_magnitude(float x)
 {
     return x < 0.0f ? -x : x;
 }
@@ -88,7 +88,7 @@ float saddle_cos(float x_rad)
 
 float saddle_asin(float x)
 {
-    const float a = saddle_clamp(magnitude(x), 0.0f, 1.0f);
+    const float a = saddle_clamp(saddle_magnitude(x), 0.0f, 1.0f);
     const bool outer = a > 0.5f; /* asin a = pi/2 - 2 asin sqrt((1 - a)/2) */
     const float z = outer ? 0.5f * (1.0f - a) : a * a;
     const float s = outer ? sqrtf(z) : a;
@@ -129,7 +129,7 @@ float saddle_exp(float x)
 
 float saddle_erf(float x)
 {
-    const float a = saddle_clamp(magnitude(x), 0.0f, ERF_SATURATION);
+    const float a = saddle_clamp(saddle_magnitude(x), 0.0f, ERF_SATURATION);
     const float high = ((ERF[7] * a + ERF[6]) * a + ERF[5]) * a + ERF[4];
     const float poly = (((high * a + ERF[3]) * a + ERF[2]) * a + ERF[1]) * a + ERF[0];
     const exp_parts_t e = exp_parts(a * poly);

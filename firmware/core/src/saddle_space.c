@@ -9,11 +9,6 @@ static float length_m(float x_m, float y_m)
     return sqrtf(x_m * x_m + y_m * y_m);
 }
 
-static float absolute(float x)
-{
-    return x < 0.0f ? -x : x;
-}
-
 saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m)
 {
     const saddle_vec2_t left = cop_m[SADDLE_LEFT];
@@ -46,8 +41,8 @@ float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m)
 {
     const float dx_m = point_m.x - bos->centre_m.x;
     const float dy_m = point_m.y - bos->centre_m.y;
-    const float x_m = absolute(dx_m * bos->axis_x.x + dy_m * bos->axis_x.y);
-    const float y_m = absolute(dy_m * bos->axis_x.x - dx_m * bos->axis_x.y);
+    const float x_m = saddle_magnitude(dx_m * bos->axis_x.x + dy_m * bos->axis_x.y);
+    const float y_m = saddle_magnitude(dy_m * bos->axis_x.x - dx_m * bos->axis_x.y);
     const float centre_distance_m = length_m(x_m, y_m);
     const float to_arc_m = bos->radius_m - centre_distance_m;
     const float to_edge_m = bos->half_depth_m - x_m;

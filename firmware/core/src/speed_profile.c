@@ -8,11 +8,6 @@
 /* A target that is not approached. */
 #define WAY_NEVER_M 1.0e9f
 
-static float magnitude(float x)
-{
-    return x < 0.0f ? -x : x;
-}
-
 /* Signed acceleration until the target is reached. */
 static float acceleration(const saddle_speed_profile_t *profile)
 {
@@ -26,8 +21,8 @@ saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t 
     const float dt_s = (float)dt_us * 1.0e-6f;
     float change_m_s = wanted_m_s;
     float change_time_s = dt_s;
-    if (magnitude(wanted_m_s) <= rate_m_s2 * dt_s) {
-        change_time_s = rate_m_s2 > 0.0f ? magnitude(wanted_m_s) / rate_m_s2 : 0.0f;
+    if (saddle_magnitude(wanted_m_s) <= rate_m_s2 * dt_s) {
+        change_time_s = rate_m_s2 > 0.0f ? saddle_magnitude(wanted_m_s) / rate_m_s2 : 0.0f;
         profile->speed = profile->target;
     } else {
         const saddle_fixed_t change = saddle_speed_change(rate_m_s2, dt_us);
@@ -45,8 +40,10 @@ static float change_way_m(const saddle_speed_profile_t *profile, float speed_m_s
     if (difference_m2_s2 == 0.0f) {
         return 0.0f;
     }
-    return profile->rate_m_s2 > 0.0f ? magnitude(difference_m2_s2) / (2.0f * profile->rate_m_s2)
-                                     : WAY_NEVER_M;
+    if (profile->rate_m_s2 <= 0.0f) {
+        return WAY_NEVER_M;
+    }
+    return saddle_magnitude(difference_m2_s2) / (2.0f * profile->rate_m_s2);
 }
 
 static float speed_on_the_way_m_s(const saddle_speed_profile_t *profile, float speed_m_s,

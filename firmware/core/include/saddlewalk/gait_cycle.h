@@ -68,6 +68,9 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_config_t *conf
 bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
                        const saddle_body_t *body, saddle_vec2_t step_m);
 
+/** Whether the running quarter leads to a saddle via point, where the swing foot lands. */
+bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);
+
 /** Way to the end of the running quarter. */
 float saddle_cycle_way_to_via_point_m(const saddle_cycle_t *cycle);
 

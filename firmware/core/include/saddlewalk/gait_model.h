@@ -57,4 +57,7 @@ float saddle_landing_y_m(const saddle_config_t *config, saddle_side_t foot, floa
 saddle_quarter_t saddle_quarter(const saddle_config_t *config, saddle_side_t stance, float length_m,
                                 float width_m, float speed_m_s);
 
+/** The other foot. */
+saddle_side_t saddle_other_side(saddle_side_t side);
+
 #endif

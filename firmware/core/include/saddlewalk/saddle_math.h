@@ -2,7 +2,7 @@
  * Elementary functions from + - * / and sqrtf alone, single precision.
  *
  * Built with -ffp-contract=off, an argument gives the same bits on every compiler and target. No
- * function of one argument returns NaN or infinity, whatever it is given. sin, asin and erf are odd
+ * function of one argument but saddle_magnitude() returns NaN or infinity. sin, asin and erf are odd
  * and cos is even, bit for bit except for the sign of zero. A stated error is the largest over
  * every float of the range (the relative one where the result is not subnormal), measured in
  * 2026-11 and held by tests/unit/test_saddle_math.c, which walks them all.
@@ -45,6 +45,9 @@ float saddle_erf(float x);
  * Relative error at most 8.3e-8.
  */
 float saddle_exp(float x);
+
+/** |x|; NaN for NaN. */
+float saddle_magnitude(float x);
 
 /** x limited to [lo, hi], where lo <= hi; lo for NaN. */
 float saddle_clamp(float x, float lo, float hi);
