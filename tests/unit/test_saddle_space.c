@@ -16,7 +16,7 @@ void tearDown(void) {}
 static saddle_bos_t side_by_side(float radius)
 {
     const saddle_vec2_t cop[2] = {{0.0f, radius}, {0.0f, -radius}};
-    return saddle_bos(cop, HALF_DEPTH_M);
+    return saddle_bos(cop, HALF_DEPTH_M, 1.0f);
 }
 
 static void assert_margin(const saddle_bos_t *bos, double expected, double x, double y)
@@ -62,7 +62,7 @@ static void test_frame_follows_the_feet(void)
 {
     /* Left foot 0.4 m ahead: y_S points forward and to the left, x_S forward and to the right. */
     const saddle_vec2_t cop[2] = {{1.4f, 0.2f}, {1.0f, -0.1f}};
-    const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M);
+    const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
     TEST_ASSERT_TRUE(bos.defined);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.2, bos.centre_m.x);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.05, bos.centre_m.y);
@@ -143,7 +143,7 @@ static void test_margin_equals_brute_force_for_random_postures(void)
     for (int i = 0; i < 1500; i++) {
         const float reach = (i & 1) != 0 ? 0.7f : 0.12f;
         const saddle_vec2_t cop[2] = {random_point(&state, reach), random_point(&state, reach)};
-        const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M);
+        const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
         if (!bos.defined) {
             continue;
         }
@@ -164,7 +164,7 @@ static void test_margin_is_continuous(void)
     const double step = 1e-3;
     for (int i = 0; i < 200; i++) {
         const saddle_vec2_t cop[2] = {random_point(&state, 0.5f), random_point(&state, 0.5f)};
-        const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M);
+        const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
         if (!bos.defined) {
             continue;
         }
@@ -193,7 +193,7 @@ static void test_polygon_is_convex_counter_clockwise_and_on_the_border(void)
     for (int i = 0; i < 100; i++) {
         const float reach = (i & 1) != 0 ? 1.0f : 0.1f;
         const saddle_vec2_t cop[2] = {random_point(&state, reach), random_point(&state, reach)};
-        const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M);
+        const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
         saddle_vec2_t vertices[SADDLE_BOS_VERTICES];
         saddle_bos_polygon(&bos, vertices);
         twin_build(&twin, cop);
@@ -242,7 +242,7 @@ static void test_polygon_has_the_corners(void)
 static void test_feet_within_a_millimetre_are_undefined(void)
 {
     const saddle_vec2_t together[2] = {{0.3f, 0.2009f}, {0.3f, 0.2f}};
-    const saddle_bos_t bos = saddle_bos(together, HALF_DEPTH_M);
+    const saddle_bos_t bos = saddle_bos(together, HALF_DEPTH_M, 1.0f);
     saddle_vec2_t vertices[SADDLE_BOS_VERTICES];
     memset(vertices, 0xA5, sizeof vertices);
     saddle_bos_polygon(&bos, vertices);
@@ -254,9 +254,9 @@ static void test_feet_within_a_millimetre_are_undefined(void)
         TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, vertices[k].y);
     }
     const saddle_vec2_t apart[2] = {{0.3f, 0.2011f}, {0.3f, 0.2f}};
-    TEST_ASSERT_TRUE(saddle_bos(apart, HALF_DEPTH_M).defined);
+    TEST_ASSERT_TRUE(saddle_bos(apart, HALF_DEPTH_M, 1.0f).defined);
     const saddle_vec2_t same[2] = {{0.3f, 0.2f}, {0.3f, 0.2f}};
-    TEST_ASSERT_FALSE(saddle_bos(same, HALF_DEPTH_M).defined);
+    TEST_ASSERT_FALSE(saddle_bos(same, HALF_DEPTH_M, 1.0f).defined);
 }
 
 static double surface_height(const saddle_vec2_t cop[2], double x, double y)

@@ -4,12 +4,15 @@
 
 #define HALF_VERTICES (SADDLE_BOS_VERTICES / 2)
 
+/* Slower counts as at rest. */
+#define REST_M_S 1.0e-4f
+
 static float length_m(float x_m, float y_m)
 {
     return sqrtf(x_m * x_m + y_m * y_m);
 }
 
-saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m)
+saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m, float factor)
 {
     const saddle_vec2_t left = cop_m[SADDLE_LEFT];
     const saddle_vec2_t right = cop_m[SADDLE_RIGHT];
@@ -24,10 +27,26 @@ saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m)
     bos.centre_m.y = 0.5f * (left.y + right.y);
     bos.axis_x.x = dy_m / distance_m;
     bos.axis_x.y = -dx_m / distance_m;
-    bos.radius_m = 0.5f * distance_m;
-    bos.half_depth_m = half_depth_m;
+    bos.radius_m = factor * 0.5f * distance_m;
+    bos.half_depth_m = factor * half_depth_m;
     bos.defined = true;
     return bos;
+}
+
+/* Task space to saddle space, directions and places alike once the centre is taken off. */
+static saddle_vec2_t to_saddle(const saddle_bos_t *bos, float dx, float dy)
+{
+    const saddle_vec2_t turned = {dx * bos->axis_x.x + dy * bos->axis_x.y,
+                                  dy * bos->axis_x.x - dx * bos->axis_x.y};
+    return turned;
+}
+
+static saddle_vec2_t to_task_m(const saddle_bos_t *bos, saddle_vec2_t saddle_m)
+{
+    const saddle_vec2_t task_m = {
+        bos->centre_m.x + saddle_m.x * bos->axis_x.x - saddle_m.y * bos->axis_x.y,
+        bos->centre_m.y + saddle_m.x * bos->axis_x.y + saddle_m.y * bos->axis_x.x};
+    return task_m;
 }
 
 /* Half the length of the straight edges; 0 for the plain disc. */
@@ -39,10 +58,10 @@ static float edge_half_length_m(const saddle_bos_t *bos)
 
 float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m)
 {
-    const float dx_m = point_m.x - bos->centre_m.x;
-    const float dy_m = point_m.y - bos->centre_m.y;
-    const float x_m = saddle_magnitude(dx_m * bos->axis_x.x + dy_m * bos->axis_x.y);
-    const float y_m = saddle_magnitude(dy_m * bos->axis_x.x - dx_m * bos->axis_x.y);
+    const saddle_vec2_t place_m =
+        to_saddle(bos, point_m.x - bos->centre_m.x, point_m.y - bos->centre_m.y);
+    const float x_m = saddle_magnitude(place_m.x);
+    const float y_m = saddle_magnitude(place_m.y);
     const float centre_distance_m = length_m(x_m, y_m);
     const float to_arc_m = bos->radius_m - centre_distance_m;
     const float to_edge_m = bos->half_depth_m - x_m;
@@ -58,6 +77,61 @@ float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m)
         return to_edge_m;
     }
     return -length_m(to_edge_m, y_m - corner_y_m);
+}
+
+/* How far the border is from an inner place along a unit direction, both in saddle space. */
+static float way_out_m(const saddle_bos_t *bos, saddle_vec2_t place_m, saddle_vec2_t direction)
+{
+    const float along_m = place_m.x * direction.x + place_m.y * direction.y;
+    const float inside_m2 = bos->radius_m * bos->radius_m - place_m.x * place_m.x -
+                            place_m.y * place_m.y + along_m * along_m;
+    const float to_arc_m = (inside_m2 > 0.0f ? sqrtf(inside_m2) : 0.0f) - along_m;
+    const float depth_m =
+        bos->half_depth_m - (direction.x > 0.0f ? place_m.x : -place_m.x);
+    const float slope = saddle_magnitude(direction.x);
+    const bool edge_first = depth_m < to_arc_m * slope;
+    return edge_first ? depth_m / slope : to_arc_m;
+}
+
+/* The nearest point of the border, in saddle space. */
+static saddle_vec2_t nearest_border_m(const saddle_bos_t *bos, saddle_vec2_t place_m)
+{
+    const float corner_y_m = edge_half_length_m(bos);
+    const float distance_m = length_m(place_m.x, place_m.y);
+    const float x_m = saddle_magnitude(place_m.x);
+    const float y_m = saddle_magnitude(place_m.y);
+    const bool inside = x_m <= bos->half_depth_m && distance_m <= bos->radius_m;
+    const bool arc_nearer = bos->radius_m - distance_m < bos->half_depth_m - x_m;
+    const bool faces_arc = x_m * bos->radius_m <= bos->half_depth_m * distance_m;
+    saddle_vec2_t border_m = {bos->half_depth_m, y_m < corner_y_m ? y_m : corner_y_m};
+    if (inside ? arc_nearer : faces_arc) {
+        const float stretch = distance_m > 0.0f ? bos->radius_m / distance_m : 0.0f;
+        border_m.x = distance_m > 0.0f ? stretch * x_m : bos->radius_m;
+        border_m.y = stretch * y_m;
+    }
+    border_m.x = place_m.x < 0.0f ? -border_m.x : border_m.x;
+    border_m.y = place_m.y < 0.0f ? -border_m.y : border_m.y;
+    return border_m;
+}
+
+saddle_vec2_t saddle_bos_exit_m(const saddle_bos_t *bos, saddle_vec2_t point_m,
+                                saddle_vec2_t direction_m_s)
+{
+    if (!bos->defined) {
+        return point_m;
+    }
+    const saddle_vec2_t place_m =
+        to_saddle(bos, point_m.x - bos->centre_m.x, point_m.y - bos->centre_m.y);
+    const float speed_m_s = length_m(direction_m_s.x, direction_m_s.y);
+    if (speed_m_s < REST_M_S || saddle_bos_margin_m(bos, point_m) < 0.0f) {
+        return to_task_m(bos, nearest_border_m(bos, place_m));
+    }
+    const saddle_vec2_t direction =
+        to_saddle(bos, direction_m_s.x / speed_m_s, direction_m_s.y / speed_m_s);
+    const float way_m = way_out_m(bos, place_m, direction);
+    const saddle_vec2_t exit_m = {place_m.x + way_m * direction.x,
+                                  place_m.y + way_m * direction.y};
+    return to_task_m(bos, exit_m);
 }
 
 /* The arc around +y_S spans +-half_angle from y_S; a plain disc is a regular polygon. */
@@ -84,23 +158,39 @@ void saddle_bos_polygon(const saddle_bos_t *bos, saddle_vec2_t vertices_m[SADDLE
     }
 }
 
+/* From the CoP that carries, the nearer one, to the CoM. */
+static saddle_vec2_t lever_m(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m)
+{
+    const saddle_vec2_t left = {com_m.x - cop_m[SADDLE_LEFT].x, com_m.y - cop_m[SADDLE_LEFT].y};
+    const saddle_vec2_t right = {com_m.x - cop_m[SADDLE_RIGHT].x, com_m.y - cop_m[SADDLE_RIGHT].y};
+    const bool right_nearer = right.x * right.x + right.y * right.y <
+                              left.x * left.x + left.y * left.y;
+    return right_nearer ? right : left;
+}
+
+static bool pendulum_height_m(saddle_vec2_t lever, float pendulum_m, float *height_m)
+{
+    const float height_m2 = pendulum_m * pendulum_m - lever.x * lever.x - lever.y * lever.y;
+    const float lowest_m = SADDLE_LOWEST_PENDULUM * pendulum_m;
+    const bool reached = height_m2 > lowest_m * lowest_m;
+    *height_m = reached ? sqrtf(height_m2) : 0.0f;
+    return reached;
+}
+
+bool saddle_surface_height_m(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m, float pendulum_m,
+                             float *height_m)
+{
+    return pendulum_height_m(lever_m(cop_m, com_m), pendulum_m, height_m);
+}
+
 bool saddle_gravity_force(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m, float pendulum_m,
                           float mass_kg, saddle_vec2_t *force_n)
 {
-    float x_m = com_m.x - cop_m[SADDLE_LEFT].x;
-    float y_m = com_m.y - cop_m[SADDLE_LEFT].y;
-    const float right_x_m = com_m.x - cop_m[SADDLE_RIGHT].x;
-    const float right_y_m = com_m.y - cop_m[SADDLE_RIGHT].y;
-    if (right_x_m * right_x_m + right_y_m * right_y_m < x_m * x_m + y_m * y_m) {
-        x_m = right_x_m;
-        y_m = right_y_m;
-    }
-    const float height_m2 = pendulum_m * pendulum_m - x_m * x_m - y_m * y_m;
-    const float lowest_m = SADDLE_LOWEST_PENDULUM * pendulum_m;
-    const bool reached = height_m2 > lowest_m * lowest_m;
-    const float stiffness_n_m =
-        reached ? mass_kg * SADDLE_GRAVITY_M_S2 / sqrtf(height_m2) : 0.0f;
-    force_n->x = stiffness_n_m * x_m;
-    force_n->y = stiffness_n_m * y_m;
+    const saddle_vec2_t lever = lever_m(cop_m, com_m);
+    float height_m;
+    const bool reached = pendulum_height_m(lever, pendulum_m, &height_m);
+    const float stiffness_n_m = reached ? mass_kg * SADDLE_GRAVITY_M_S2 / height_m : 0.0f;
+    force_n->x = stiffness_n_m * lever.x;
+    force_n->y = stiffness_n_m * lever.y;
     return reached;
 }

@@ -47,7 +47,7 @@ static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t
     context->ticked = true;
     if (since_us > limit_us) {
         *limits |= (uint32_t)SADDLE_LIMIT_TICK_GAP;
-        context->supervisor.step_open = false; /* what happened in the gap is not known */
+        saddle_track_gap(&context->supervisor.steps);
         return limit_us;
     }
     return (uint32_t)since_us;
@@ -56,11 +56,8 @@ static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t
 /* The feet for the planner: what the supervisor would use of them. */
 static saddle_feet_t measured_feet(const saddle_measurement_t *measurement, uint32_t faults)
 {
-    const uint32_t feet_faults =
-        (uint32_t)SADDLE_FAULT_LEFT_STALE | (uint32_t)SADDLE_FAULT_LEFT_RANGE |
-        (uint32_t)SADDLE_FAULT_RIGHT_STALE | (uint32_t)SADDLE_FAULT_RIGHT_RANGE;
     const saddle_feet_t feet = {
-        .known = (faults & feet_faults) == 0u,
+        .known = (faults & SADDLE_FAULTS_FEET) == 0u,
         .cop_m = {measurement->foot[SADDLE_LEFT].cop_m, measurement->foot[SADDLE_RIGHT].cop_m},
         .contact = {measurement->foot[SADDLE_LEFT].contact,
                     measurement->foot[SADDLE_RIGHT].contact},
@@ -82,6 +79,33 @@ static saddle_scores_t score_plan(const saddle_context_t *context, const saddle_
     return saddle_score_posture(&context->config, &context->body, &posture);
 }
 
+/* Where the wearer is to be. */
+static saddle_intent_t intent_of(const saddle_plan_t *plan)
+{
+    const saddle_vec3_t *feet = plan->foot_m;
+    const saddle_vec2_t middle_m = {0.5f * (feet[SADDLE_LEFT].x + feet[SADDLE_RIGHT].x),
+                                    0.5f * (feet[SADDLE_LEFT].y + feet[SADDLE_RIGHT].y)};
+    const bool walking = plan->speed_m_s > 0.0f;
+    saddle_intent_t intent = {
+        .leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u,
+        .walking = walking,
+        .step = {
+            .stance = (saddle_side_t)plan->support,
+            .speed_m_s = plan->speed_m_s,
+            .half_behind_m = 0.5f * plan->step_length_m,
+            .width_behind_m = plan->step_width_m,
+            .landing_m = {plan->landing_m.x, plan->landing_m.y - feet[plan->support].y},
+        },
+    };
+    if (!walking) {
+        intent.standing.com_m.x = plan->com_m.x - middle_m.x;
+        intent.standing.com_m.y = plan->com_m.y - middle_m.y;
+        intent.standing.velocity_m_s.x = plan->com_velocity_m_s.x;
+        intent.standing.velocity_m_s.y = plan->com_velocity_m_s.y;
+    }
+    return intent;
+}
+
 saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
                             saddle_output_t *output)
 {
@@ -98,17 +122,19 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
         output->faults |= (uint32_t)SADDLE_FAULT_COMMAND;
     }
     const uint32_t dt_us = elapsed_us(context, input->time_us, &output->limits);
-    const uint32_t faults = saddle_supervisor_judge(&context->config, &input->measurement);
+    const float dt_s = (float)dt_us * 1.0e-6f;
+    const uint32_t faults = saddle_judge(&context->supervisor.watch, &context->config,
+                                         &input->measurement, dt_s);
     const saddle_feet_t feet = measured_feet(&input->measurement, faults);
     output->limits |= saddle_planner_update(&context->planner, &context->config, &context->body,
                                             &context->command, &feet, dt_us);
     output->limits |= saddle_planner_write(&context->planner, &context->config, &context->body,
                                            &output->plan);
     output->plan_scores = score_plan(context, &output->plan);
-    output->faults |= saddle_supervisor_update(&context->supervisor, &context->config,
-                                               &context->body, &input->measurement, faults,
-                                               (float)dt_us * 1.0e-6f, output->plan.speed_m_s,
-                                               &output->scores);
+    const saddle_intent_t intent = intent_of(&output->plan);
+    output->faults |= saddle_supervisor_update(
+        &context->supervisor, &context->config, &context->body, &input->measurement, faults, dt_s,
+        &intent, &output->scores, &output->verdict);
     return SADDLE_OK;
 }
 

@@ -2,88 +2,16 @@
 #include <saddlewalk/stability_scores.h>
 #include <saddlewalk/supervisor.h>
 
-/* Beyond these a measurement of a person who stands or walks is absurd. */
-#define COM_HEIGHT_MIN_M 0.1f
-#define COM_HEIGHT_MAX_M 2.5f
-#define COM_SPEED_MAX_M_S 6.0f
-#define COP_DISTANCE_MAX_M 2.5f
+/* A foot that landed by less ahead made no step to go by. */
+#define HALF_STEP_MIN_M 0.02f
 
-static bool vec2_within(saddle_vec2_t v, float max)
-{
-    return saddle_in_range(v.x, -max, max) && saddle_in_range(v.y, -max, max);
-}
+/* Walks that a measured one is compared with; fixed point holds speeds below 4 m/s. */
+#define SPEED_MIN_M_S 0.01f
+#define SPEED_MAX_M_S 3.9f
 
-static bool stale(const saddle_config_t *config, uint32_t age_us)
+static bool holds(const saddle_scores_t *scores, uint32_t results)
 {
-    return (float)age_us > config->measurement_max_age_s * 1.0e6f;
-}
-
-static uint32_t judge_com(const saddle_config_t *config, const saddle_measurement_t *measurement)
-{
-    if (stale(config, measurement->com.age_us)) {
-        return (uint32_t)SADDLE_FAULT_COM_STALE;
-    }
-    if (!saddle_in_range(measurement->com.height_m, COM_HEIGHT_MIN_M, COM_HEIGHT_MAX_M) ||
-        !vec2_within(measurement->com.velocity_m_s, COM_SPEED_MAX_M_S)) {
-        return (uint32_t)SADDLE_FAULT_COM_RANGE;
-    }
-    return 0;
-}
-
-static uint32_t judge_foot(const saddle_config_t *config, const saddle_measurement_t *measurement,
-                           saddle_side_t side)
-{
-    const bool left = side == SADDLE_LEFT;
-    if (stale(config, measurement->foot[side].age_us)) {
-        return (uint32_t)(left ? SADDLE_FAULT_LEFT_STALE : SADDLE_FAULT_RIGHT_STALE);
-    }
-    if (!vec2_within(measurement->foot[side].cop_m, COP_DISTANCE_MAX_M)) {
-        return (uint32_t)(left ? SADDLE_FAULT_LEFT_RANGE : SADDLE_FAULT_RIGHT_RANGE);
-    }
-    return 0;
-}
-
-/* A usable foot that was in the air and is on the ground now. */
-static bool heel_strike(saddle_supervisor_t *supervisor, const saddle_measurement_t *measurement,
-                        saddle_side_t side)
-{
-    const bool contact = measurement->foot[side].contact;
-    const bool strike = contact && supervisor->airborne[side];
-    supervisor->airborne[side] = !contact;
-    return strike;
-}
-
-/* v_CoMp: the velocity integrated by the trapezoidal rule from one heel strike to the next. */
-static void follow_speed(saddle_supervisor_t *supervisor, bool velocity_known, float velocity_m_s,
-                         float dt_s, bool strike)
-{
-    supervisor->step_open = supervisor->step_open && velocity_known;
-    if (supervisor->step_open) {
-        supervisor->step_distance_m += 0.5f * dt_s * (supervisor->last_velocity_m_s + velocity_m_s);
-        supervisor->step_duration_s += dt_s;
-    }
-    if (velocity_known) {
-        supervisor->last_velocity_m_s = velocity_m_s;
-    }
-    if (!strike) {
-        return;
-    }
-    if (supervisor->step_open && supervisor->step_duration_s > 0.0f) {
-        supervisor->v_comp_m_s = supervisor->step_distance_m / supervisor->step_duration_s;
-        supervisor->v_comp_known = true;
-    }
-    supervisor->step_open = velocity_known;
-    supervisor->step_distance_m = 0.0f;
-    supervisor->step_duration_s = 0.0f;
-}
-
-static void follow_half_step(saddle_supervisor_t *supervisor,
-                             const saddle_measurement_t *measurement)
-{
-    const float distance_m =
-        measurement->foot[SADDLE_LEFT].cop_m.x - measurement->foot[SADDLE_RIGHT].cop_m.x;
-    supervisor->half_step_m = 0.5f * (distance_m < 0.0f ? -distance_m : distance_m);
-    supervisor->half_step_known = true;
+    return (scores->valid & results) == results;
 }
 
 static void score_steps(const saddle_config_t *config, const saddle_body_t *body,
@@ -98,10 +26,21 @@ static void score_steps(const saddle_config_t *config, const saddle_body_t *body
     scores->valid |= (uint32_t)SADDLE_VALID_STEP;
 }
 
+static void score_energy(const saddle_config_t *config, const saddle_body_t *body,
+                         const saddle_posture_t *posture, saddle_scores_t *scores)
+{
+    const saddle_com_state_t state = {posture->com_m, posture->com_velocity_m_s};
+    if (saddle_excess_stop_j(config, body, posture->cop_m, &scores->bos, &state,
+                             &scores->excess_stop_j)) {
+        scores->can_stop = saddle_ankle_work_j(config, body) >= scores->excess_stop_j;
+        scores->valid |= (uint32_t)SADDLE_VALID_STOP;
+    }
+}
+
 static void score_space(const saddle_config_t *config, const saddle_body_t *body,
                         const saddle_posture_t *posture, saddle_scores_t *scores)
 {
-    scores->bos = saddle_bos(posture->cop_m, config->cop_range_m);
+    scores->bos = saddle_bos(posture->cop_m, config->cop_range_m, config->bos_factor);
     if (!scores->bos.defined) {
         return;
     }
@@ -110,11 +49,18 @@ static void score_space(const saddle_config_t *config, const saddle_body_t *body
     if ((posture->known & SADDLE_KNOWN_VELOCITY) != 0u) {
         scores->mos_xcom_m = saddle_bos_margin_m(&scores->bos, scores->xcom_m);
         scores->valid |= (uint32_t)SADDLE_VALID_MOS_XCOM;
+        score_energy(config, body, posture, scores);
     }
     if (saddle_gravity_force(posture->cop_m, posture->com_m, body->pendulum_m,
                              config->body_mass_kg, &scores->gravity_n)) {
         scores->valid |= (uint32_t)SADDLE_VALID_GRAVITY;
     }
+}
+
+static bool stable_step(const saddle_scores_t *scores)
+{
+    return holds(scores, (uint32_t)SADDLE_VALID_STEP | (uint32_t)SADDLE_VALID_S_SW) &&
+           scores->s_pend > 0.0f && scores->s_jump > 0.0f && scores->s_sw > 0.0f;
 }
 
 saddle_scores_t saddle_score_posture(const saddle_config_t *config, const saddle_body_t *body,
@@ -143,6 +89,7 @@ saddle_scores_t saddle_score_posture(const saddle_config_t *config, const saddle
     if ((known & SADDLE_KNOWN_FEET) != 0u) {
         score_space(config, body, posture, &scores);
     }
+    scores.paper_stable = scores.can_stop || stable_step(&scores);
     return scores;
 }
 
@@ -154,52 +101,298 @@ static uint32_t judge_scores(uint32_t known, const saddle_scores_t *scores)
     if ((known & SADDLE_KNOWN_FEET) != 0u && !scores->bos.defined) {
         faults |= (uint32_t)SADDLE_FAULT_FEET_TOGETHER;
     }
-    if ((known & for_steps) == for_steps && (scores->valid & SADDLE_VALID_STEP) == 0u) {
+    if ((known & for_steps) == for_steps && !holds(scores, (uint32_t)SADDLE_VALID_STEP)) {
         faults |= (uint32_t)SADDLE_FAULT_SPEED_INFEASIBLE;
     }
     return faults;
 }
 
-uint32_t saddle_supervisor_judge(const saddle_config_t *config,
-                                 const saddle_measurement_t *measurement)
+static saddle_vec2_t less(saddle_vec2_t a, saddle_vec2_t b)
 {
-    return judge_com(config, measurement) | judge_foot(config, measurement, SADDLE_LEFT) |
-           judge_foot(config, measurement, SADDLE_RIGHT);
+    return (saddle_vec2_t){a.x - b.x, a.y - b.y};
+}
+
+static saddle_vec2_t plus(saddle_vec2_t a, saddle_vec2_t b)
+{
+    return (saddle_vec2_t){a.x + b.x, a.y + b.y};
+}
+
+static saddle_vec2_t xcom_of(const saddle_body_t *body, const saddle_com_state_t *state)
+{
+    return saddle_xcom_m(state->com_m, state->velocity_m_s, body->natural_frequency_rad_s);
+}
+
+/* The measured posture from a point that the CoM is com_m away from. */
+typedef struct {
+    saddle_com_state_t com;
+    saddle_vec2_t cop_m[2];
+    saddle_bos_t bos;
+} seen_t;
+
+static seen_t seen_from(const saddle_config_t *config,
+                               const saddle_measurement_t *measurement, saddle_vec2_t com_m)
+{
+    seen_t seen = {
+        .com = {com_m, measurement->com.velocity_m_s},
+        .cop_m = {plus(com_m, measurement->foot[SADDLE_LEFT].cop_m),
+                  plus(com_m, measurement->foot[SADDLE_RIGHT].cop_m)},
+    };
+    seen.bos = saddle_bos(seen.cop_m, config->cop_range_m, config->bos_factor);
+    return seen;
+}
+
+/* What any planned state says about the measured one. */
+static void compare_state(const saddle_config_t *config, const saddle_body_t *body,
+                          const seen_t *seen, const saddle_com_state_t *planned,
+                          saddle_verdict_t *verdict)
+{
+    const bool reached = saddle_excess_track_j(config, body, seen->cop_m, &seen->bos, &seen->com,
+                                               planned, &verdict->excess_track_j);
+    verdict->compared = true;
+    verdict->on_track = reached && saddle_ankle_work_j(config, body) >= verdict->excess_track_j;
+    verdict->xcom_deviation_m = less(xcom_of(body, &seen->com), xcom_of(body, planned));
+}
+
+/* trailing_m: the foot that still carries beside the stance foot, from there. */
+static saddle_vec2_t least_deviation_m(const saddle_config_t *config, const saddle_body_t *body,
+                                       saddle_vec2_t deviation_m, saddle_vec2_t trailing_m,
+                                       float time_s)
+{
+    const saddle_cop_shift_t ap = {config->cop_shift_ap_m, trailing_m.x};
+    const saddle_cop_shift_t ml = {config->cop_shift_ml_m, trailing_m.y};
+    const saddle_vec2_t least_m = {saddle_least_deviation_m(body, deviation_m.x, ap, time_s),
+                                   saddle_least_deviation_m(body, deviation_m.y, ml, time_s)};
+    return least_m;
+}
+
+/* Both feet are to stand: no heel strike is expected, and the foot on the side to which the XCoM
+ * departs can make a recovery step. */
+static void compare_standing(const saddle_config_t *config, const saddle_body_t *body,
+                             const saddle_measurement_t *measurement,
+                             const saddle_com_state_t *planned, saddle_verdict_t *verdict)
+{
+    const saddle_vec2_t *cop_m[2] = {&measurement->foot[SADDLE_LEFT].cop_m,
+                                     &measurement->foot[SADDLE_RIGHT].cop_m};
+    const saddle_vec2_t to_com_m = {-0.5f * (cop_m[0]->x + cop_m[1]->x),
+                                    -0.5f * (cop_m[0]->y + cop_m[1]->y)};
+    const seen_t seen = seen_from(config, measurement, to_com_m);
+    compare_state(config, body, &seen, planned, verdict);
+    verdict->ebos_com_m = saddle_bos_margin_m(&seen.bos, seen.com.com_m);
+    verdict->ebos_xcom_m = saddle_bos_margin_m(&seen.bos, xcom_of(body, &seen.com));
+
+    const saddle_vec2_t zero_m = {0.0f, 0.0f};
+    const saddle_vec2_t deviation_m = verdict->xcom_deviation_m;
+    const saddle_side_t foot = deviation_m.y > 0.0f ? SADDLE_LEFT : SADDLE_RIGHT;
+    const saddle_vec2_t stance_m = seen.cop_m[saddle_other_side(foot)];
+    const saddle_vec2_t xcom_m =
+        plus(xcom_of(body, planned),
+             least_deviation_m(config, body, deviation_m, zero_m, config->foresight_s));
+    const saddle_catch_t to_catch = {
+        .stance = saddle_other_side(foot),
+        .landing_m = less(seen.cop_m[foot], stance_m),
+        .xcom_m = less(xcom_m, stance_m),
+        .step_time_s = config->foresight_s,
+    };
+    verdict->recovery = saddle_recovery_step(config, body, &to_catch);
+}
+
+/* The step that a steady walk makes on a stance foot, after a step as the last one was. */
+static saddle_step_t usual_step(const saddle_config_t *config, const saddle_step_tracker_t *steps,
+                                saddle_side_t stance, float speed_m_s)
+{
+    const saddle_side_t foot = saddle_other_side(stance);
+    const float half_step_m =
+        saddle_position_to_m(saddle_half_step(config, foot, saddle_speed_from_m_s(speed_m_s)));
+    const float width_m = saddle_step_width_m(config, speed_m_s);
+    const bool stepped = steps->half_step_known && steps->half_step_m > HALF_STEP_MIN_M;
+    const float last_width_m =
+        stepped ? saddle_clamp(steps->step_width_m, 0.5f * width_m, 2.0f * width_m) : width_m;
+    const saddle_step_t step = {
+        .stance = stance,
+        .speed_m_s = speed_m_s,
+        .half_behind_m = stepped ? steps->half_step_m : half_step_m,
+        .width_behind_m = last_width_m,
+        .landing_m = {2.0f * half_step_m, foot == SADDLE_LEFT ? last_width_m : -last_width_m},
+    };
+    return step;
+}
+
+/* The planned step while the wearer is on its stance foot, with both feet down as well. */
+static saddle_step_t running_step(const saddle_config_t *config,
+                                  const saddle_step_tracker_t *steps,
+                                  const saddle_measurement_t *measurement,
+                                  const saddle_intent_t *intent, float speed_m_s)
+{
+    const bool both = measurement->foot[SADDLE_LEFT].contact &&
+                      measurement->foot[SADDLE_RIGHT].contact;
+    const saddle_side_t stance = (saddle_side_t)steps->stance;
+    return intent->walking && (both || stance == intent->step.stance)
+               ? intent->step
+               : usual_step(config, steps, stance, speed_m_s);
+}
+
+static void compare_walking(const saddle_config_t *config, const saddle_body_t *body,
+                            const saddle_measurement_t *measurement, const saddle_step_t *step,
+                            saddle_verdict_t *verdict)
+{
+    const saddle_vec2_t zero_m = {0.0f, 0.0f};
+    const saddle_vec2_t com_m = less(zero_m, measurement->foot[step->stance].cop_m);
+    const seen_t seen = seen_from(config, measurement, com_m);
+    const saddle_expectation_t expected = saddle_expect(config, step, com_m.x);
+    compare_state(config, body, &seen, &expected.now, verdict);
+
+    const saddle_com_state_t deviation = {
+        less(com_m, expected.now.com_m),
+        less(seen.com.velocity_m_s, expected.now.velocity_m_s)};
+    const saddle_com_state_t grown = saddle_grown(body, &deviation, expected.time_s);
+    const saddle_vec2_t landed_m[2] = {zero_m, expected.landing_m};
+    const saddle_bos_t ebos = saddle_bos(landed_m, config->cop_range_m, config->bos_factor);
+    const saddle_vec2_t planned_xcom_m = xcom_of(body, &expected.landing);
+    verdict->ebos_com_m =
+        saddle_bos_margin_m(&ebos, plus(expected.landing.com_m, grown.com_m));
+    verdict->ebos_xcom_m = saddle_bos_margin_m(&ebos, plus(planned_xcom_m, xcom_of(body, &grown)));
+
+    const saddle_side_t foot = saddle_other_side(step->stance);
+    const saddle_vec2_t trailing_m = measurement->foot[foot].contact ? seen.cop_m[foot] : zero_m;
+    const saddle_catch_t to_catch = {
+        .stance = step->stance,
+        .landing_m = expected.landing_m,
+        .xcom_m = plus(planned_xcom_m, least_deviation_m(config, body, verdict->xcom_deviation_m,
+                                                         trailing_m, expected.time_s)),
+        .step_time_s = expected.step_time_s,
+    };
+    verdict->recovery = saddle_recovery_step(config, body, &to_catch);
+}
+
+/* Against what is planned; without a command, against the walk of the last step or standing.
+ * Whether it is a walk. */
+static bool compare(const saddle_config_t *config, const saddle_body_t *body,
+                    const saddle_step_tracker_t *steps, const saddle_measurement_t *measurement,
+                    const saddle_intent_t *intent, saddle_verdict_t *verdict)
+{
+    const float own_m_s = steps->v_comp_known ? steps->v_comp_m_s : 0.0f;
+    const float speed_m_s =
+        saddle_clamp(intent->leads ? intent->step.speed_m_s : own_m_s, 0.0f, SPEED_MAX_M_S);
+    const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
+    if (walks && speed_m_s >= SPEED_MIN_M_S) {
+        const saddle_step_t step = running_step(config, steps, measurement, intent, speed_m_s);
+        compare_walking(config, body, measurement, &step, verdict);
+        return true;
+    }
+    if (intent->leads || steps->stands) {
+        compare_standing(config, body, measurement, &intent->standing, verdict);
+    }
+    return false;
+}
+
+/* A score that a walk is judged by and that is too low. */
+static saddle_reason_t low_score(const saddle_config_t *config, uint32_t faults,
+                                 const saddle_scores_t *scores)
+{
+    const bool steps = holds(scores, (uint32_t)SADDLE_VALID_STEP);
+    if ((faults & (uint32_t)SADDLE_FAULT_SPEED_INFEASIBLE) != 0u) {
+        return SADDLE_REASON_SPEED;
+    }
+    if (steps && scores->s_pend < config->caution_score) {
+        return SADDLE_REASON_S_PEND;
+    }
+    if (steps && scores->s_jump < config->caution_score) {
+        return SADDLE_REASON_S_JUMP;
+    }
+    if (holds(scores, (uint32_t)SADDLE_VALID_S_SW) && scores->s_sw < config->caution_score) {
+        return SADDLE_REASON_S_SW;
+    }
+    return SADDLE_REASON_NONE;
+}
+
+static saddle_reason_t departure(const saddle_config_t *config, const saddle_verdict_t *verdict)
+{
+    if (saddle_magnitude(verdict->xcom_deviation_m.x) > config->caution_xcom_ap_m) {
+        return SADDLE_REASON_XCOM_AP;
+    }
+    if (saddle_magnitude(verdict->xcom_deviation_m.y) > config->caution_xcom_ml_m) {
+        return SADDLE_REASON_XCOM_ML;
+    }
+    return verdict->on_track ? SADDLE_REASON_NONE : SADDLE_REASON_OFF_TRACK;
+}
+
+static saddle_reason_t reason_of(const saddle_config_t *config, uint32_t faults,
+                                 bool walks, const saddle_scores_t *scores,
+                                 const saddle_verdict_t *verdict)
+{
+    const uint32_t unusable = SADDLE_FAULTS_COM | SADDLE_FAULTS_FEET |
+                              (uint32_t)SADDLE_FAULT_FEET_TOGETHER;
+    if ((faults & unusable) != 0u) {
+        return SADDLE_REASON_INPUT;
+    }
+    if (!verdict->compared) {
+        return SADDLE_REASON_NO_WALK;
+    }
+    const bool stays = scores->can_stop && scores->mos_xcom_m >= config->stop_margin_m;
+    if (!stays && !verdict->recovery.found) {
+        return SADDLE_REASON_NO_STEP;
+    }
+    const saddle_reason_t low =
+        walks ? low_score(config, faults, scores) : SADDLE_REASON_NONE;
+    return low != SADDLE_REASON_NONE ? low : departure(config, verdict);
+}
+
+static saddle_level_t level_of(saddle_reason_t reason)
+{
+    switch (reason) {
+    case SADDLE_REASON_NONE: return SADDLE_LEVEL_STABLE;
+    case SADDLE_REASON_INPUT:
+    case SADDLE_REASON_NO_WALK: return SADDLE_LEVEL_UNKNOWN;
+    case SADDLE_REASON_NO_STEP: return SADDLE_LEVEL_UNSTABLE;
+    default: return SADDLE_LEVEL_CAUTION;
+    }
+}
+
+/* A level is announced once it has held for long enough, unknown at once. */
+static void announce(saddle_supervisor_t *supervisor, const saddle_config_t *config,
+                     saddle_reason_t reason)
+{
+    const saddle_level_t level = level_of(reason);
+    const bool goes_on = supervisor->next_level == (uint8_t)level;
+    const bool counts = goes_on && supervisor->next_level_ticks < UINT8_MAX;
+    supervisor->next_level_ticks =
+        (uint8_t)(counts ? supervisor->next_level_ticks + 1u : goes_on ? UINT8_MAX : 1u);
+    supervisor->next_level = (uint8_t)level;
+    if (level == SADDLE_LEVEL_UNKNOWN || level == (saddle_level_t)supervisor->level ||
+        (float)supervisor->next_level_ticks >= config->level_hold_ticks) {
+        supervisor->level = (uint8_t)level;
+        supervisor->reason = (uint8_t)reason;
+    }
 }
 
 uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_config_t *config,
                                   const saddle_body_t *body,
                                   const saddle_measurement_t *measurement, uint32_t faults,
-                                  float dt_s, float planned_speed_m_s, saddle_scores_t *scores)
+                                  float dt_s, const saddle_intent_t *intent,
+                                  saddle_scores_t *scores, saddle_verdict_t *verdict)
 {
-    const bool com_known =
-        (faults & ((uint32_t)SADDLE_FAULT_COM_STALE | (uint32_t)SADDLE_FAULT_COM_RANGE)) == 0u;
-    const bool left_known =
-        (faults & ((uint32_t)SADDLE_FAULT_LEFT_STALE | (uint32_t)SADDLE_FAULT_LEFT_RANGE)) == 0u;
-    const bool right_known =
-        (faults & ((uint32_t)SADDLE_FAULT_RIGHT_STALE | (uint32_t)SADDLE_FAULT_RIGHT_RANGE)) == 0u;
-    const bool feet_known = left_known && right_known;
-
-    const bool left_strike = left_known && heel_strike(supervisor, measurement, SADDLE_LEFT);
-    const bool right_strike =
-        right_known && heel_strike(supervisor, measurement, SADDLE_RIGHT);
-    const bool strike = left_strike || right_strike;
-    follow_speed(supervisor, com_known, measurement->com.velocity_m_s.x, dt_s, strike);
-    if (strike && feet_known) {
-        follow_half_step(supervisor, measurement);
-    }
-
-    const bool speed_known = supervisor->v_comp_known || planned_speed_m_s > 0.0f;
+    saddle_step_tracker_t *steps = &supervisor->steps;
+    saddle_track_steps(steps, config, measurement, faults, dt_s);
+    const bool feet_known = (faults & SADDLE_FAULTS_FEET) == 0u;
+    const bool com_known = (faults & SADDLE_FAULTS_COM) == 0u;
+    const bool speed_known = steps->v_comp_known || intent->step.speed_m_s > 0.0f;
     const saddle_posture_t posture = {
         .com_velocity_m_s = measurement->com.velocity_m_s,
         .cop_m = {measurement->foot[SADDLE_LEFT].cop_m, measurement->foot[SADDLE_RIGHT].cop_m},
-        .v_comp_m_s = supervisor->v_comp_known ? supervisor->v_comp_m_s : planned_speed_m_s,
-        .half_step_m = supervisor->half_step_m,
+        .v_comp_m_s = steps->v_comp_known ? steps->v_comp_m_s : intent->step.speed_m_s,
+        .half_step_m = steps->half_step_m,
         .known = (feet_known ? (uint32_t)SADDLE_KNOWN_FEET : 0u) |
                  (com_known ? (uint32_t)SADDLE_KNOWN_VELOCITY : 0u) |
                  (speed_known ? (uint32_t)SADDLE_KNOWN_SPEED : 0u) |
-                 (supervisor->half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u),
+                 (steps->half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u),
     };
     *scores = saddle_score_posture(config, body, &posture);
-    return faults | judge_scores(posture.known, scores);
+    const uint32_t all_faults = faults | judge_scores(posture.known, scores);
+    *verdict = (saddle_verdict_t){.compared = false};
+    const bool walks = com_known && feet_known && scores->bos.defined &&
+                       compare(config, body, steps, measurement, intent, verdict);
+    announce(supervisor, config, reason_of(config, all_faults, walks, scores, verdict));
+    verdict->level = supervisor->level;
+    verdict->reason = supervisor->reason;
+    return all_faults;
 }

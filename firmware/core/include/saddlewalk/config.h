@@ -39,7 +39,25 @@ typedef struct {
     float step_width_factor_right;
     float swing_clearance_m;          /**< height of the swing foot at mid-swing, [E10] */
     float tick_max_s;                 /**< the plan advances by no more than this in one tick */
-    float measurement_max_age_s;      /**< older measurements are not used */
+    float com_max_age_s;              /**< older measurements of the CoM are not used */
+    float foot_max_age_s;             /**< nor of a foot's CoP and contact */
+    float flight_max_s;               /**< both feet in the air for longer is no walking */
+    float crossing_max_m;             /**< the left CoP lies right of the right one by no more */
+    float step_time_max_s;            /**< without a heel strike for longer nobody walks */
+    float bos_factor;                 /**< share of the geometric BoS that is used; 1: the paper's */
+    float ankle_work_factor;          /**< W_max of m g d_h^2 / l_p, [E27] */
+    float stop_margin_m;              /**< of the XCoM, to stop in the present posture; -10: any, as
+                                           printed, [E31] */
+    float foresight_s;                /**< a wearer in need can put the foot down within this, [E28] */
+    float cop_shift_ap_m;             /**< how far the wearer can move the CoP, [E30]; 0: as printed */
+    float cop_shift_ml_m;
+    float recovery_width_min_m;       /**< a recovery step is at least so wide, [E30] */
+    float recovery_width_max_m;       /**< and at most so wide */
+    float recovery_margin_m;          /**< XCoM inside the landing CoP by this, [E30] */
+    float caution_score;              /**< a score below it is a caution, [E31] */
+    float caution_xcom_ap_m;          /**< XCoM off the planned one by more is a caution, [E31] */
+    float caution_xcom_ml_m;
+    float level_hold_ticks;           /**< a level holds this long before it is announced */
     saddle_ankle_t ankle;
 } saddle_config_t;
 

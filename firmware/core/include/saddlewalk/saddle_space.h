@@ -13,24 +13,35 @@
 /** A pendulum lower than this share of its length lies on the ground: gravity along it is undefined. */
 #define SADDLE_LOWEST_PENDULUM 0.1f
 
-/** Base of support: the disc around the midpoint of the CoPs, cut at +-half_depth_m along x_S. */
+/** Base of support: the disc around the midpoint of the CoPs, cut at +-half_depth_m along x_S; or the
+ *  share of it that a person uses. */
 typedef struct {
     saddle_vec2_t centre_m;
     saddle_vec2_t axis_x;  /**< unit vector x_S; lambda = atan2(axis_x.y, axis_x.x) */
-    float radius_m;        /**< half the distance between the CoPs */
-    float half_depth_m;    /**< d_h */
+    float radius_m;        /**< half the distance between the CoPs, times the share */
+    float half_depth_m;    /**< d_h, times the share */
     bool defined;          /**< false: feet together, every number above is 0 */
 } saddle_bos_t;
 
-/** [E15] [E16] */
-saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m);
+/** [E15] [E16] factor: the share of the geometric BoS that is used, 1 for the paper's. */
+saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m, float factor);
 
 /** [E17] Signed Euclidean distance to the border, positive inside. 0 if the BoS is undefined. */
 float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m);
 
+/** [E26] Where a point that moves along direction_m_s leaves the BoS; the nearest point of the border
+ *  for one at rest or outside. The point itself if the BoS is undefined. */
+saddle_vec2_t saddle_bos_exit_m(const saddle_bos_t *bos, saddle_vec2_t point_m,
+                                saddle_vec2_t direction_m_s);
+
 /** For display: a convex polygon inscribed in the BoS, counter-clockwise, every vertex on the
  *  border. Zeros if the BoS is undefined. */
 void saddle_bos_polygon(const saddle_bos_t *bos, saddle_vec2_t vertices_m[SADDLE_BOS_VERTICES]);
+
+/** [E18] z_s: height of the energy surface, U = m g z_s, over the CoP that carries, the nearer one.
+ *  False, and 0, where the pendulum does not reach. */
+bool saddle_surface_height_m(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m, float pendulum_m,
+                             float *height_m);
 
 /** [E18] Gravity along the energy surface, from the leg that carries (the nearer CoP).
  *  False, and zero force, where the pendulum does not reach. */

@@ -13,6 +13,7 @@
 
 #include <saddlewalk/config.h>
 #include <saddlewalk/gait_model.h>
+#include <saddlewalk/measurement.h>
 #include <saddlewalk/planner.h>
 #include <saddlewalk/saddle_space.h>
 #include <saddlewalk/supervisor.h>
@@ -44,6 +45,7 @@ typedef struct {
     saddle_plan_t plan;
     saddle_scores_t plan_scores; /**< of the planned posture, in the frame of the plan */
     saddle_scores_t scores;      /**< of the measured posture, in the frame of the CoM */
+    saddle_verdict_t verdict;    /**< the measured posture against the plan */
 } saddle_output_t;
 
 /** Caller-owned state; treat the fields as private. */

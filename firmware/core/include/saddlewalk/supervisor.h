@@ -1,44 +1,18 @@
-/** The stability supervisor: judges inputs, then scores the posture. */
+/** The stability supervisor: scores the measured posture, compares it with the walk that is
+ *  planned, and says how far the wearer is from falling. */
 #ifndef SADDLEWALK_SUPERVISOR_H
 #define SADDLEWALK_SUPERVISOR_H
 
+#include <saddlewalk/energy.h>
+#include <saddlewalk/expected_step.h>
 #include <saddlewalk/gait_model.h>
+#include <saddlewalk/measurement.h>
+#include <saddlewalk/recovery_step.h>
 #include <saddlewalk/saddle_space.h>
 #include <saddlewalk/saddle_types.h>
+#include <saddlewalk/step_tracker.h>
 #include <stdbool.h>
 #include <stdint.h>
-
-/** Age of a measurement that never came. */
-#define SADDLE_AGE_NEVER_US UINT32_MAX
-
-/** Each foot and the CoM have their own age at the time of the tick. What is older than
- *  measurement_max_age_s, not finite or absurd is not used: a CoM outside 0.1 to 2.5 m of height or
- *  6 m/s along x or y, a CoP beyond 2.5 m along x or y. */
-typedef struct {
-    struct {
-        float height_m; /**< above the ground */
-        saddle_vec2_t velocity_m_s;
-        uint32_t age_us;
-    } com;
-    struct {
-        saddle_vec2_t cop_m; /**< relative to the CoM */
-        bool contact;
-        uint32_t age_us;
-    } foot[2];
-} saddle_measurement_t;
-
-/** Why an input was not used or gave no score. */
-typedef enum {
-    SADDLE_FAULT_COMMAND = 1u << 0, /**< not usable: the last good one holds, see planner.h */
-    SADDLE_FAULT_COM_STALE = 1u << 1,
-    SADDLE_FAULT_COM_RANGE = 1u << 2, /**< not finite or absurd */
-    SADDLE_FAULT_LEFT_STALE = 1u << 3,
-    SADDLE_FAULT_LEFT_RANGE = 1u << 4,
-    SADDLE_FAULT_RIGHT_STALE = 1u << 5,
-    SADDLE_FAULT_RIGHT_RANGE = 1u << 6,
-    SADDLE_FAULT_FEET_TOGETHER = 1u << 7,   /**< CoPs within 1 mm: no saddle space */
-    SADDLE_FAULT_SPEED_INFEASIBLE = 1u << 8 /**< v_CoMp cannot be walked: no step scores */
-} saddle_fault_t;
 
 /** Which fields of saddle_scores_t hold a result; the others are 0. xcom_m is known whenever the
  *  velocity is, and bos says so itself (bos.defined). */
@@ -49,9 +23,11 @@ typedef enum {
     SADDLE_VALID_MOS_COM = 1u << 3,
     SADDLE_VALID_MOS_XCOM = 1u << 4,
     SADDLE_VALID_GRAVITY = 1u << 5,
-    SADDLE_VALID_ALL = (1u << 6) - 1u
+    SADDLE_VALID_STOP = 1u << 6, /**< excess_stop_j and can_stop */
+    SADDLE_VALID_ALL = (1u << 7) - 1u
 } saddle_valid_t;
 
+/** Scores of a posture, in its frame. */
 typedef struct {
     uint32_t valid;    /**< saddle_valid_t bits */
     float v_comp_m_s;  /**< mean AP speed over the last completed step, else the planner's */
@@ -59,8 +35,11 @@ typedef struct {
     float s_sw;        /**< [E21] */
     float mos_com_m, mos_xcom_m; /**< margins in the instantaneous BoS, [E17] */
     saddle_vec2_t gravity_n;     /**< [E18] */
-    saddle_vec2_t xcom_m;        /**< [E19] in the frame of the posture */
-    saddle_bos_t bos;            /**< instantaneous, in the frame of the posture */
+    float excess_stop_j;         /**< [E26] */
+    bool can_stop;               /**< [E27] the ankles can absorb that */
+    bool paper_stable;           /**< the paper's verdict: can_stop, or all three scores > 0 */
+    saddle_vec2_t xcom_m;        /**< [E19] */
+    saddle_bos_t bos;            /**< instantaneous (I-BoS) */
 } saddle_scores_t;
 
 typedef enum {
@@ -79,30 +58,71 @@ typedef struct {
     uint32_t known;    /**< saddle_known_t bits; the numbers of the others are not read */
 } saddle_posture_t;
 
+/** How far the wearer is from falling, [E31]. */
+typedef enum {
+    SADDLE_LEVEL_UNKNOWN = 0,
+    SADDLE_LEVEL_STABLE = 1,
+    SADDLE_LEVEL_CAUTION = 2, /**< departs from the walk, but can stop or step */
+    SADDLE_LEVEL_UNSTABLE = 3 /**< can neither stop nor reach a place to step to */
+} saddle_level_t;
+
+/** What decided the level. */
+typedef enum {
+    SADDLE_REASON_NONE = 0,
+    SADDLE_REASON_INPUT = 1,     /**< unknown: the faults say which input */
+    SADDLE_REASON_NO_WALK = 2,   /**< unknown: nothing is planned, and nobody was seen to stand or to
+                                      complete a step */
+    SADDLE_REASON_NO_STEP = 3,   /**< unstable: no place within reach catches the XCoM */
+    SADDLE_REASON_SPEED = 4,     /**< caution, here and below: v_CoMp cannot be walked */
+    SADDLE_REASON_S_PEND = 5,
+    SADDLE_REASON_S_JUMP = 6,
+    SADDLE_REASON_S_SW = 7,
+    SADDLE_REASON_XCOM_AP = 8,   /**< the XCoM is off the planned one */
+    SADDLE_REASON_XCOM_ML = 9,
+    SADDLE_REASON_OFF_TRACK = 10 /**< more energy than the ankles can bring back to the plan's */
+} saddle_reason_t;
+
+/** The measured posture against the walk that is planned. Where compared is false all else but
+ *  level and reason is 0. */
+typedef struct {
+    uint8_t level;  /**< saddle_level_t that is announced */
+    uint8_t reason; /**< saddle_reason_t of it */
+    bool compared;
+    bool on_track;          /**< [E27] the ankles can absorb excess_track_j */
+    float excess_track_j;   /**< [E26] */
+    float ebos_com_m, ebos_xcom_m;  /**< margins expected in the BoS of the next heel strike (E-BoS),
+                                         [E29] */
+    saddle_vec2_t xcom_deviation_m; /**< from the planned XCoM at the same phase */
+    saddle_recovery_t recovery;     /**< [E30] */
+} saddle_verdict_t;
+
+/** What the supervisor takes from the planner: where the wearer is to be. */
+typedef struct {
+    bool leads;        /**< a walk has been commanded since the start: the wearer follows the plan */
+    bool walking;      /**< else both feet stand */
+    saddle_step_t step;      /**< the planned one, while walking */
+    saddle_com_state_t standing; /**< while both feet stand, from midway between them */
+} saddle_intent_t;
+
 /** Supervisor state, part of the context. */
 typedef struct {
-    float step_distance_m, step_duration_s; /**< since the last heel strike */
-    float last_velocity_m_s;
-    float v_comp_m_s, half_step_m;          /**< of the last completed step and heel strike */
-    bool step_open;     /**< a heel strike was seen and the velocity was known ever since */
-    bool v_comp_known, half_step_known;
-    bool airborne[2];   /**< seen without contact at the last usable measurement of the foot */
+    saddle_watch_t watch;
+    saddle_step_tracker_t steps;
+    uint8_t level, reason;       /**< announced */
+    uint8_t next_level;          /**< waits to be announced */
+    uint8_t next_level_ticks;
 } saddle_supervisor_t;
 
 /** Score a posture. Whatever is not known is not scored. */
 saddle_scores_t saddle_score_posture(const saddle_config_t *config, const saddle_body_t *body,
                                      const saddle_posture_t *posture);
 
-/** Judge a measurement: age limit, finite, humanly possible. Returns saddle_fault_t bits. */
-uint32_t saddle_supervisor_judge(const saddle_config_t *config,
-                                 const saddle_measurement_t *measurement);
-
-/** Follow the steps and score the posture in the frame of the CoM. faults: what
- *  saddle_supervisor_judge() said. planned_speed_m_s stands in for v_comp until a step is complete.
- *  Returns the faults and those of the scores. */
+/** Follow the steps, score the posture in the frame of the CoM and give the verdict. faults: what
+ *  saddle_judge() said. Returns the faults and those of the scores. */
 uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_config_t *config,
                                   const saddle_body_t *body,
                                   const saddle_measurement_t *measurement, uint32_t faults,
-                                  float dt_s, float planned_speed_m_s, saddle_scores_t *scores);
+                                  float dt_s, const saddle_intent_t *intent,
+                                  saddle_scores_t *scores, saddle_verdict_t *verdict);
 
 #endif

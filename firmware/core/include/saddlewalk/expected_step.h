@@ -1,0 +1,37 @@
+/** The step under way as it is planned, and what a deviation from it will have grown to when the
+ *  foot lands. Every point is measured from the stance CoP. */
+#ifndef SADDLEWALK_EXPECTED_STEP_H
+#define SADDLEWALK_EXPECTED_STEP_H
+
+#include <saddlewalk/config.h>
+#include <saddlewalk/energy.h>
+#include <saddlewalk/gait_model.h>
+#include <saddlewalk/saddle_types.h>
+
+/** A step of a steady walk. */
+typedef struct {
+    saddle_side_t stance;
+    float speed_m_s;       /**< > 0 */
+    float half_behind_m;   /**< from the foot via point back to the last landing, > 0 */
+    float width_behind_m;  /**< between the lines of the feet then */
+    saddle_vec2_t landing_m; /**< of the swing CoP */
+} saddle_step_t;
+
+/** [E28] What the step expects. */
+typedef struct {
+    saddle_com_state_t now;     /**< at the measured phase */
+    saddle_com_state_t landing; /**< when the foot lands */
+    saddle_vec2_t landing_m;    /**< there */
+    float time_s;               /**< until then, at most foresight_s */
+    float step_time_s;          /**< of a whole step */
+} saddle_expectation_t;
+
+/** [E28] The step at the phase of a CoM that is x_m from the stance CoP. */
+saddle_expectation_t saddle_expect(const saddle_config_t *config, const saddle_step_t *step,
+                                   float x_m);
+
+/** [E29] A deviation after time_s of free fall about the CoP. */
+saddle_com_state_t saddle_grown(const saddle_body_t *body, const saddle_com_state_t *deviation,
+                                float time_s);
+
+#endif

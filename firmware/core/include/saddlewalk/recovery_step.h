@@ -1,0 +1,41 @@
+/** [E30] Where to put the foot so that walking can go on, or that no place within reach will do. */
+#ifndef SADDLEWALK_RECOVERY_STEP_H
+#define SADDLEWALK_RECOVERY_STEP_H
+
+#include <saddlewalk/config.h>
+#include <saddlewalk/gait_model.h>
+#include <saddlewalk/saddle_types.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** Points are measured from the stance CoP, the foot that does not step. */
+typedef struct {
+    bool found;     /**< false: no place within reach helps, and landing_m is 0 */
+    bool stops;     /**< the XCoM will lie in the BoS of that posture: the step ends the walk */
+    uint8_t foot;   /**< saddle_side_t: the foot that steps */
+    saddle_vec2_t landing_m; /**< the place nearest to the planned landing */
+    float margin_m; /**< reach that is left on the scarcer axis; negative: what is lacking */
+} saddle_recovery_t;
+
+/** What a recovery step has to catch. */
+typedef struct {
+    saddle_side_t stance;
+    saddle_vec2_t landing_m; /**< planned */
+    saddle_vec2_t xcom_m;    /**< expected when the foot lands */
+    float step_time_s;       /**< of the steps after it */
+} saddle_catch_t;
+
+saddle_recovery_t saddle_recovery_step(const saddle_config_t *config, const saddle_body_t *body,
+                                       const saddle_catch_t *to_catch);
+
+/** How far the wearer can move the CoP from where it is planned, along one axis. */
+typedef struct {
+    float foot_m;     /**< either way, within the stance foot, all the time */
+    float trailing_m; /**< signed: to the trailing foot, while it is still on the ground; else 0 */
+} saddle_cop_shift_t;
+
+/** [E30] The least that a deviation of the XCoM along one axis can have become after time_s. */
+float saddle_least_deviation_m(const saddle_body_t *body, float deviation_m,
+                               saddle_cop_shift_t shift, float time_s);
+
+#endif

@@ -1,0 +1,55 @@
+#include <saddlewalk/com_path.h>
+#include <saddlewalk/expected_step.h>
+#include <saddlewalk/saddle_math.h>
+
+/* A step that ends beside the stance foot still has a quarter with a shape. */
+#define QUARTER_MIN_M 1.0e-3f
+
+static saddle_com_state_t state_at(const saddle_quarter_t *quarter, float speed_m_s, float x_m)
+{
+    const saddle_sample_t lateral =
+        saddle_com_lateral(quarter, saddle_quarter_angle_rad(quarter, x_m));
+    const saddle_com_state_t state = {
+        .com_m = {x_m, lateral.value},
+        .velocity_m_s = {speed_m_s, lateral.slope * speed_m_s},
+    };
+    return state;
+}
+
+saddle_expectation_t saddle_expect(const saddle_config_t *config, const saddle_step_t *step,
+                                   float x_m)
+{
+    const float half_ahead_m = 0.5f * step->landing_m.x;
+    const saddle_quarter_t behind = saddle_quarter(config, step->stance, step->half_behind_m,
+                                                   step->width_behind_m, step->speed_m_s);
+    const saddle_quarter_t ahead = saddle_quarter(
+        config, step->stance, half_ahead_m > QUARTER_MIN_M ? half_ahead_m : QUARTER_MIN_M,
+        saddle_magnitude(step->landing_m.y), step->speed_m_s);
+    const float phase_m = saddle_clamp(x_m, -step->half_behind_m, half_ahead_m);
+    saddle_expectation_t expected;
+    expected.now = state_at(phase_m < 0.0f ? &behind : &ahead, step->speed_m_s, phase_m);
+    expected.landing = state_at(&ahead, step->speed_m_s, half_ahead_m);
+    expected.landing_m = step->landing_m;
+    expected.time_s =
+        saddle_clamp((half_ahead_m - phase_m) / step->speed_m_s, 0.0f, config->foresight_s);
+    expected.step_time_s = (half_ahead_m + step->half_behind_m) / step->speed_m_s;
+    return expected;
+}
+
+saddle_com_state_t saddle_grown(const saddle_body_t *body, const saddle_com_state_t *deviation,
+                                float time_s)
+{
+    const float w = body->natural_frequency_rad_s;
+    const float growth = saddle_exp(w * time_s);
+    const float cosh_wt = 0.5f * (growth + 1.0f / growth);
+    const float sinh_wt = 0.5f * (growth - 1.0f / growth);
+    const saddle_vec2_t place_m = deviation->com_m;
+    const saddle_vec2_t velocity_m_s = deviation->velocity_m_s;
+    const saddle_com_state_t grown = {
+        .com_m = {place_m.x * cosh_wt + velocity_m_s.x / w * sinh_wt,
+                  place_m.y * cosh_wt + velocity_m_s.y / w * sinh_wt},
+        .velocity_m_s = {place_m.x * w * sinh_wt + velocity_m_s.x * cosh_wt,
+                         place_m.y * w * sinh_wt + velocity_m_s.y * cosh_wt},
+    };
+    return grown;
+}

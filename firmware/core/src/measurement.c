@@ -1,0 +1,153 @@
+#include <saddlewalk/measurement.h>
+#include <saddlewalk/saddle_math.h>
+
+/* Beyond these a measurement of a person who stands or walks is absurd. */
+#define KNEE_HEIGHT 0.285f /* of the body's height: Drillis and Contini 1966 */
+#define COM_SPEED_MAX_M_S 6.0f
+#define COP_DISTANCE_MAX_M 2.5f
+
+/* A number that keeps its bits is frozen once the rest of the body says that it moved by this. */
+#define FROZEN_WAY_M 0.02f
+
+static bool vec2_within(saddle_vec2_t v, float max)
+{
+    return saddle_in_range(v.x, -max, max) && saddle_in_range(v.y, -max, max);
+}
+
+static bool same(saddle_vec2_t a, saddle_vec2_t b)
+{
+    return a.x == b.x && a.y == b.y;
+}
+
+static bool older(uint32_t age_us, float max_age_s)
+{
+    return (float)age_us > max_age_s * 1.0e6f;
+}
+
+static uint32_t judge_com(const saddle_config_t *config, const saddle_measurement_t *measurement)
+{
+    const float height_m = config->body_height_m;
+    if (older(measurement->com.age_us, config->com_max_age_s)) {
+        return (uint32_t)SADDLE_FAULT_COM_STALE;
+    }
+    if (!saddle_in_range(measurement->com.height_m, KNEE_HEIGHT * height_m, height_m) ||
+        !vec2_within(measurement->com.velocity_m_s, COM_SPEED_MAX_M_S)) {
+        return (uint32_t)SADDLE_FAULT_COM_RANGE;
+    }
+    return 0;
+}
+
+static uint32_t judge_foot(const saddle_config_t *config, const saddle_measurement_t *measurement,
+                           saddle_side_t side)
+{
+    const bool left = side == SADDLE_LEFT;
+    if (older(measurement->foot[side].age_us, config->foot_max_age_s)) {
+        return (uint32_t)(left ? SADDLE_FAULT_LEFT_STALE : SADDLE_FAULT_RIGHT_STALE);
+    }
+    if (!vec2_within(measurement->foot[side].cop_m, COP_DISTANCE_MAX_M)) {
+        return (uint32_t)(left ? SADDLE_FAULT_LEFT_RANGE : SADDLE_FAULT_RIGHT_RANGE);
+    }
+    return 0;
+}
+
+/* Let time pass for a number that keeps its bits, or start anew. */
+static void follow_still(saddle_still_t *still, bool unchanged, saddle_vec2_t velocity_m_s,
+                         float dt_s)
+{
+    if (!unchanged) {
+        *still = (saddle_still_t){.still_s = 0.0f};
+        return;
+    }
+    still->still_s += dt_s;
+    still->way_m.x += velocity_m_s.x * dt_s;
+    still->way_m.y += velocity_m_s.y * dt_s;
+}
+
+/* The CoM moved over a foot whose place relative to it did not. */
+static bool foot_frozen(saddle_watch_t *watch, const saddle_config_t *config,
+                        const saddle_measurement_t *measurement, saddle_side_t side, float dt_s)
+{
+    saddle_still_t *still = &watch->foot_still[side];
+    follow_still(still, same(measurement->foot[side].cop_m, watch->cop_m[side]),
+                 measurement->com.velocity_m_s, dt_s);
+    return still->still_s > config->foot_max_age_s && !vec2_within(still->way_m, FROZEN_WAY_M);
+}
+
+/* The CoM's velocity did not change, and a foot on the ground went another way than it says. */
+static bool com_frozen(saddle_watch_t *watch, const saddle_config_t *config,
+                       const saddle_measurement_t *measurement, float dt_s)
+{
+    saddle_still_t *still = &watch->com_still;
+    const bool unchanged = measurement->com.height_m == watch->height_m &&
+                           same(measurement->com.velocity_m_s, watch->velocity_m_s);
+    follow_still(still, unchanged, measurement->com.velocity_m_s, dt_s);
+    bool contradicted = false;
+    for (int side = 0; side < 2; side++) {
+        const saddle_vec2_t cop_m = measurement->foot[side].cop_m;
+        saddle_vec2_t *start_m = &watch->cop_when_com_stopped_m[side];
+        if (!unchanged) {
+            *start_m = cop_m;
+            watch->stood_since[side] = true;
+        }
+        watch->stood_since[side] =
+            watch->stood_since[side] && measurement->foot[side].contact;
+        const saddle_vec2_t amiss_m = {cop_m.x - start_m->x + still->way_m.x,
+                                       cop_m.y - start_m->y + still->way_m.y};
+        contradicted =
+            contradicted || (watch->stood_since[side] && !vec2_within(amiss_m, FROZEN_WAY_M));
+    }
+    return contradicted && still->still_s > config->com_max_age_s;
+}
+
+static uint32_t judge_alive(saddle_watch_t *watch, const saddle_config_t *config,
+                            const saddle_measurement_t *measurement, float dt_s)
+{
+    uint32_t faults = 0;
+    if (com_frozen(watch, config, measurement, dt_s)) {
+        faults |= (uint32_t)SADDLE_FAULT_COM_FROZEN;
+    }
+    if (foot_frozen(watch, config, measurement, SADDLE_LEFT, dt_s)) {
+        faults |= (uint32_t)SADDLE_FAULT_LEFT_FROZEN;
+    }
+    if (foot_frozen(watch, config, measurement, SADDLE_RIGHT, dt_s)) {
+        faults |= (uint32_t)SADDLE_FAULT_RIGHT_FROZEN;
+    }
+    watch->velocity_m_s = measurement->com.velocity_m_s;
+    watch->height_m = measurement->com.height_m;
+    watch->cop_m[SADDLE_LEFT] = measurement->foot[SADDLE_LEFT].cop_m;
+    watch->cop_m[SADDLE_RIGHT] = measurement->foot[SADDLE_RIGHT].cop_m;
+    return faults;
+}
+
+static uint32_t judge_feet(saddle_watch_t *watch, const saddle_config_t *config,
+                           const saddle_measurement_t *measurement, float dt_s)
+{
+    const float width_m =
+        measurement->foot[SADDLE_LEFT].cop_m.y - measurement->foot[SADDLE_RIGHT].cop_m.y;
+    const bool flight =
+        !measurement->foot[SADDLE_LEFT].contact && !measurement->foot[SADDLE_RIGHT].contact;
+    watch->flight_s = flight ? watch->flight_s + dt_s : 0.0f;
+    uint32_t faults = 0;
+    if (watch->flight_s > config->flight_max_s) {
+        faults |= (uint32_t)SADDLE_FAULT_AIRBORNE;
+    }
+    if (width_m < -config->crossing_max_m) {
+        faults |= (uint32_t)SADDLE_FAULT_FEET_CROSSED;
+    }
+    return faults;
+}
+
+uint32_t saddle_judge(saddle_watch_t *watch, const saddle_config_t *config,
+                      const saddle_measurement_t *measurement, float dt_s)
+{
+    const uint32_t feet = judge_foot(config, measurement, SADDLE_LEFT) |
+                          judge_foot(config, measurement, SADDLE_RIGHT);
+    uint32_t faults = judge_com(config, measurement) | feet;
+    if (feet == 0u) {
+        faults |= judge_feet(watch, config, measurement, dt_s);
+    }
+    if ((faults & (SADDLE_FAULTS_COM | SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT)) == 0u) {
+        faults |= judge_alive(watch, config, measurement, dt_s);
+    }
+    return faults;
+}

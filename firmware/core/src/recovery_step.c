@@ -1,0 +1,89 @@
+#include <saddlewalk/recovery_step.h>
+#include <saddlewalk/saddle_math.h>
+#include <saddlewalk/saddle_space.h>
+
+/* Both feet carry for about this long after a heel strike: a sixth of a step. */
+#define TRAILING_S 0.1f
+
+/* Where on an axis the foot may land; empty when max < min. */
+typedef struct {
+    float min_m, max_m;
+} interval_t;
+
+static interval_t common(interval_t a, interval_t b)
+{
+    const interval_t both = {a.min_m > b.min_m ? a.min_m : b.min_m,
+                             a.max_m < b.max_m ? a.max_m : b.max_m};
+    return both;
+}
+
+/* Forward: the XCoM no further ahead than steps of full reach sustain, nor behind the heel. */
+static interval_t along(const saddle_config_t *config, const saddle_body_t *body,
+                        const saddle_catch_t *to_catch)
+{
+    const float reach_m = 2.0f * body->half_step_max_m;
+    const float growth = saddle_exp(body->natural_frequency_rad_s * to_catch->step_time_s);
+    const float sustained_m = growth > 1.0f ? reach_m / (growth - 1.0f) : 2.0f * reach_m;
+    const interval_t reached = {-reach_m, reach_m};
+    const interval_t caught = {to_catch->xcom_m.x - sustained_m,
+                               to_catch->xcom_m.x + config->cop_range_m};
+    return common(reached, caught);
+}
+
+/* Outward from the stance foot: beyond the XCoM, but so that the step after it reaches back over
+ * it. That one may be as quick as foresight_s. */
+static interval_t across(const saddle_config_t *config, const saddle_body_t *body,
+                         const saddle_catch_t *to_catch, float outward)
+{
+    const float quick_s = to_catch->step_time_s < config->foresight_s ? to_catch->step_time_s
+                                                                      : config->foresight_s;
+    const float growth = saddle_exp(body->natural_frequency_rad_s * quick_s);
+    const interval_t reached = {config->recovery_width_min_m, config->recovery_width_max_m};
+    const float xcom_m = outward * to_catch->xcom_m.y;
+    const interval_t caught = {xcom_m + config->recovery_margin_m,
+                               xcom_m + config->recovery_width_max_m / growth};
+    return common(reached, caught);
+}
+
+static bool stops_at(const saddle_config_t *config, const saddle_catch_t *to_catch,
+                     saddle_vec2_t landing_m)
+{
+    const saddle_vec2_t cop_m[2] = {{0.0f, 0.0f}, landing_m};
+    const saddle_bos_t bos = saddle_bos(cop_m, config->cop_range_m, config->bos_factor);
+    return bos.defined && saddle_bos_margin_m(&bos, to_catch->xcom_m) >= 0.0f;
+}
+
+saddle_recovery_t saddle_recovery_step(const saddle_config_t *config, const saddle_body_t *body,
+                                       const saddle_catch_t *to_catch)
+{
+    const float outward = to_catch->stance == SADDLE_LEFT ? -1.0f : 1.0f;
+    const interval_t x = along(config, body, to_catch);
+    const interval_t y = across(config, body, to_catch, outward);
+    const float room_x_m = x.max_m - x.min_m;
+    const float room_y_m = y.max_m - y.min_m;
+    saddle_recovery_t recovery = {.found = room_x_m >= 0.0f && room_y_m >= 0.0f};
+    recovery.foot = (uint8_t)saddle_other_side(to_catch->stance);
+    recovery.margin_m = room_x_m < room_y_m ? room_x_m : room_y_m;
+    if (recovery.found) {
+        recovery.landing_m.x = saddle_clamp(to_catch->landing_m.x, x.min_m, x.max_m);
+        recovery.landing_m.y =
+            outward * saddle_clamp(outward * to_catch->landing_m.y, y.min_m, y.max_m);
+        recovery.stops = stops_at(config, to_catch, recovery.landing_m);
+    }
+    return recovery;
+}
+
+float saddle_least_deviation_m(const saddle_body_t *body, float deviation_m,
+                               saddle_cop_shift_t shift, float time_s)
+{
+    const float w = body->natural_frequency_rad_s;
+    const float growth = saddle_exp(w * time_s);
+    const float carried_s = time_s < TRAILING_S ? time_s : TRAILING_S;
+    const float trailing_m =
+        saddle_magnitude(shift.trailing_m) * (growth - saddle_exp(w * (time_s - carried_s)));
+    const float foot_m = shift.foot_m * (growth - 1.0f);
+    const float grown_m = deviation_m * growth;
+    const bool towards_trailing = deviation_m * shift.trailing_m > 0.0f;
+    const float mended_m = towards_trailing ? foot_m + trailing_m : foot_m;
+    return grown_m - saddle_clamp(grown_m, -mended_m, mended_m);
+}
