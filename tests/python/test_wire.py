@@ -13,7 +13,7 @@ from cffi import FFI
 from saddlewalk import paths, wire
 
 SEED = 20261122
-OUTPUTS = 1000  # of 14 frames
+OUTPUTS = 1000  # of 18 frames
 INPUTS = 3000  # of 4 frames
 
 NUMBERS = {
@@ -58,6 +58,20 @@ NUMBERS = {
         "V_COMP": "scores.v_comp_m_s",
     },
     "SCORES_FORCE": {"GRAVITY_X": "scores.gravity_n.x", "GRAVITY_Y": "scores.gravity_n.y"},
+    "SCORES_ENERGY": {
+        "EXCESS_STOP": "scores.excess_stop_j",
+        "EXCESS_TRACK": "verdict.excess_track_j",
+    },
+    "SCORES_EXPECTED": {"EBOS_COM": "verdict.ebos_com_m", "EBOS_XCOM": "verdict.ebos_xcom_m"},
+    "VERDICT": {
+        "XCOM_DEVIATION_X": "verdict.xcom_deviation_m.x",
+        "XCOM_DEVIATION_Y": "verdict.xcom_deviation_m.y",
+    },
+    "RECOVERY": {
+        "X": "verdict.recovery.landing_m.x",
+        "Y": "verdict.recovery.landing_m.y",
+        "MARGIN": "verdict.recovery.margin_m",
+    },
     "HEALTH": {},
 }
 VALID_BIT = {
@@ -69,6 +83,7 @@ VALID_BIT = {
     "V_COMP": "SADDLE_VALID_V_COMP",
     "GRAVITY_X": "SADDLE_VALID_GRAVITY",
     "GRAVITY_Y": "SADDLE_VALID_GRAVITY",
+    "EXCESS_STOP": "SADDLE_VALID_STOP",
 }
 MEASURED = {
     "MEASURED_COM": {
@@ -79,6 +94,7 @@ MEASURED = {
     "MEASURED_LEFT": {"X": "foot.0.cop_m.x", "Y": "foot.0.cop_m.y"},
     "MEASURED_RIGHT": {"X": "foot.1.cop_m.x", "Y": "foot.1.cop_m.y"},
 }
+SATURATING = {"LATE_TICKS", "REJECTED_FRAMES"}
 COMMAND = {"SPEED": "speed_m_s", "HEEL_STRIKE": "heel_strike_rad"}
 
 ffi = FFI()
@@ -149,29 +165,56 @@ def assert_says(said: float, value: float, scale: float) -> None:
         assert abs(said - nearest) <= scale / 2 + 1e-6 * abs(nearest)
 
 
-def random_output(codec, rng: random.Random):
-    """A saddle_output_t, and what its frames must say, by the names of the DBC."""
+def is_known(codec, output, signal: str, field: str) -> bool:
+    """Whether the output holds that number at all."""
+    if field.startswith("plan."):
+        return output.plan.valid
+    if signal in VALID_BIT:
+        return bool(output.scores.valid & getattr(codec, VALID_BIT[signal]))
+    found = output.verdict.recovery.found or "landing" not in field
+    return output.verdict.compared and found
+
+
+def random_states(rng: random.Random):
+    """A saddle_output_t with everything but its numbers."""
     output = ffi.new("saddle_output_t *")
     output.status = rng.randrange(5)
-    output.limits, output.faults = rng.randrange(32), rng.randrange(256)
-    output.scores.valid = rng.randrange(64)
-    plan = output.plan
+    output.limits, output.faults = rng.randrange(32), rng.randrange(2**14)
+    plan, scores, verdict = output.plan, output.scores, output.verdict
     plan.valid = rng.random() < 0.8
     plan.mode, plan.phase, plan.support = rng.randrange(4), rng.randrange(4), rng.randrange(2)
     plan.step_count = rng.randrange(2**32)
+    scores.valid = rng.randrange(128)
+    scores.can_stop, scores.paper_stable = rng.randrange(2), rng.randrange(2)
+    verdict.level, verdict.reason = rng.randrange(4), rng.randrange(11)
+    verdict.compared, verdict.on_track = rng.random() < 0.8, rng.randrange(2)
+    recovery = verdict.recovery
+    recovery.found, recovery.stops, recovery.foot = (rng.randrange(2) for _ in range(3))
+    return output
+
+
+def random_output(codec, rng: random.Random):
+    """A saddle_output_t, and what its frames must say, by the names of the DBC."""
+    output = random_states(rng)
+    plan, scores, verdict = output.plan, output.scores, output.verdict
     said = {}
     for message, signals in NUMBERS.items():
         said[message] = {}
         for signal, field in signals.items():
             value = any_number(rng, scale_of(message, signal))
             put(output, field, value)
-            bit = getattr(codec, VALID_BIT[signal]) if message.startswith("SCORES") else 0
-            valid = output.scores.valid & bit if bit else plan.valid
-            said[message][signal] = value if valid else math.nan
+            known = is_known(codec, output, signal, field)
+            said[message][signal] = value if known else math.nan
     said["PLAN_STEP"] |= {"VALID": plan.valid, "SUPPORT": plan.support, "PHASE": plan.phase}
     said["PLAN_STEP"]["STEP_COUNT"] = plan.step_count % 65536
     said["PLAN_EVENTS"]["MODE"] = plan.mode
     said["SCORES_FORCE"]["FAULTS"] = output.faults
+    said["SCORES_ENERGY"] |= {"CAN_STOP": scores.can_stop, "ON_TRACK": verdict.on_track}
+    said["SCORES_ENERGY"]["PAPER_STABLE"] = scores.paper_stable
+    said["VERDICT"] |= {"LEVEL": verdict.level, "REASON": verdict.reason}
+    said["VERDICT"]["COMPARED"] = verdict.compared
+    recovery = verdict.recovery
+    said["RECOVERY"] |= {"FOUND": recovery.found, "STOPS": recovery.stops, "FOOT": recovery.foot}
     said["HEALTH"] = {"STATUS": output.status, "LIMITS": output.limits}
     return output, said
 
@@ -191,8 +234,11 @@ def test_output_from_c_to_python(codec):
             assert sender.frame(name, **values).data == bytes(frame.data), (name, values)
             received_name, received = receiver.accept(message_of(frame))
             assert (received_name, received["COUNTER"]) == (name, counter % 16)
-            for signal in NUMBERS[name]:
-                assert_says(received[signal], values[signal], scale_of(name, signal))
+            for signal in values.keys() - SATURATING:
+                if signal in NUMBERS[name]:
+                    assert_says(received[signal], values[signal], scale_of(name, signal))
+                else:
+                    assert received[signal] == values[signal], signal
     assert receiver.accepted == OUTPUTS * len(NUMBERS)
     assert received["LATE_TICKS"] == min(health.late_ticks, 65535)
 

@@ -183,6 +183,70 @@ static void test_a_plan_that_is_not_valid_has_no_numbers(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(nothing, &frames[9].data[1], 7);
 }
 
+static saddle_output_t judged(void)
+{
+    return (saddle_output_t){
+        .scores = {.valid = SADDLE_VALID_STOP, .excess_stop_j = 31.2f, .paper_stable = true},
+        .verdict = {.level = SADDLE_LEVEL_CAUTION,
+                    .reason = SADDLE_REASON_OFF_TRACK,
+                    .compared = true,
+                    .on_track = true,
+                    .excess_track_j = -0.5f,
+                    .ebos_com_m = 0.25f,
+                    .ebos_xcom_m = -0.3f,
+                    .xcom_deviation_m = {0.05f, -0.02f},
+                    .recovery = {.found = true,
+                                 .foot = SADDLE_RIGHT,
+                                 .landing_m = {0.7f, -0.15f},
+                                 .margin_m = 0.2f}}};
+}
+
+static void assert_judgement(const saddle_output_t *output, const uint8_t expected[4][7])
+{
+    const saddle_wire_health_t health = {0, 0};
+    saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
+    saddle_wire_encode_output(output, &health, 7, frames);
+    for (size_t i = 0; i < 4u; ++i) {
+        TEST_ASSERT_EQUAL_HEX16(0x133u + i, frames[13u + i].id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[13u + i].data[1], 7);
+    }
+}
+
+/** Written out by hand from the DBC. Byte 1 holds the bits above the counter: on track and stable
+ *  by the paper; compared; found and the right foot. Then 312 and -5 (0.1 J), 2500 and -3000
+ *  (0.1 mm), level 2 and reason 10, 500 and -200, 7000, -1500 and 2000. */
+static void test_judgement_bytes(void)
+{
+    const uint8_t expected[4][7] = {{0x67, 0x38, 0x01, 0xFB, 0xFF, 0x00, 0x00},
+                                    {0x07, 0xC4, 0x09, 0x48, 0xF4, 0x00, 0x00},
+                                    {0x17, 0x02, 0x0A, 0xF4, 0x01, 0x38, 0xFF},
+                                    {0x57, 0x58, 0x1B, 0x24, 0xFA, 0xD0, 0x07}};
+    const saddle_output_t output = judged();
+    assert_judgement(&output, expected);
+}
+
+/** The energy to stop hangs on its own bit; all that the plan is needed for on `compared`. */
+static void test_what_was_not_compared_has_no_numbers(void)
+{
+    const uint8_t not_compared[4][7] = {{0x67, 0x38, 0x01, 0x00, 0x80, 0x00, 0x00},
+                                        {0x07, 0x00, 0x80, 0x00, 0x80, 0x00, 0x00},
+                                        {0x07, 0x02, 0x0A, 0x00, 0x80, 0x00, 0x80},
+                                        {0x57, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80}};
+    saddle_output_t output = judged();
+    output.verdict.compared = false;
+    assert_judgement(&output, not_compared);
+
+    const uint8_t no_step_no_stop[4][7] = {{0x67, 0x00, 0x80, 0xFB, 0xFF, 0x00, 0x00},
+                                           {0x07, 0xC4, 0x09, 0x48, 0xF4, 0x00, 0x00},
+                                           {0x17, 0x02, 0x0A, 0xF4, 0x01, 0x38, 0xFF},
+                                           {0x47, 0x00, 0x80, 0x00, 0x80, 0x30, 0xF8}};
+    output = judged();
+    output.scores.valid = SADDLE_VALID_ALL & ~(uint32_t)SADDLE_VALID_STOP;
+    output.verdict.recovery.found = false;
+    output.verdict.recovery.margin_m = -0.2f;
+    assert_judgement(&output, no_step_no_stop);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -197,5 +261,7 @@ int main(void)
     RUN_TEST(test_decoding_leaves_ages_and_other_parts);
     RUN_TEST(test_events_and_pitch_bytes);
     RUN_TEST(test_a_plan_that_is_not_valid_has_no_numbers);
+    RUN_TEST(test_judgement_bytes);
+    RUN_TEST(test_what_was_not_compared_has_no_numbers);
     return UNITY_END();
 }

@@ -272,6 +272,39 @@ static void encode_scores(const saddle_scores_t *scores, uint32_t faults, uint8_
            .faults = (uint16_t)faults);
 }
 
+static void encode_foresight(const saddle_scores_t *scores, const saddle_verdict_t *verdict,
+                             uint8_t counter, saddle_frame_t *frames)
+{
+    const bool stop = holds(scores, SADDLE_VALID_STOP);
+    const bool compared = verdict->compared;
+    ENCODE(&frames[0], scores_energy, SCORES_ENERGY, .counter = counter,
+           .can_stop = scores->can_stop, .on_track = verdict->on_track,
+           .paper_stable = scores->paper_stable,
+           .excess_stop = RAW(scores_energy_excess_stop, stop, scores->excess_stop_j),
+           .excess_track = RAW(scores_energy_excess_track, compared, verdict->excess_track_j));
+    ENCODE(&frames[1], scores_expected, SCORES_EXPECTED, .counter = counter,
+           .ebos_com = RAW(scores_expected_ebos_com, compared, verdict->ebos_com_m),
+           .ebos_xcom = RAW(scores_expected_ebos_xcom, compared, verdict->ebos_xcom_m));
+}
+
+static void encode_verdict(const saddle_verdict_t *verdict, uint8_t counter,
+                           saddle_frame_t *frames)
+{
+    const bool compared = verdict->compared;
+    const saddle_vec2_t deviation_m = verdict->xcom_deviation_m;
+    const saddle_recovery_t *recovery = &verdict->recovery;
+    const bool landing = compared && recovery->found;
+    ENCODE(&frames[0], verdict, VERDICT, .counter = counter, .compared = compared,
+           .level = verdict->level, .reason = verdict->reason,
+           .xcom_deviation_x = RAW(verdict_xcom_deviation_x, compared, deviation_m.x),
+           .xcom_deviation_y = RAW(verdict_xcom_deviation_y, compared, deviation_m.y));
+    ENCODE(&frames[1], recovery, RECOVERY, .counter = counter, .found = recovery->found,
+           .stops = recovery->stops, .foot = recovery->foot,
+           .x = RAW(recovery_x, landing, recovery->landing_m.x),
+           .y = RAW(recovery_y, landing, recovery->landing_m.y),
+           .margin = RAW(recovery_margin, compared, recovery->margin_m));
+}
+
 void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_health_t *health,
                                uint8_t counter, saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES])
 {
@@ -281,7 +314,9 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
     encode_step_plan(&output->plan, counter, &frames[5]);
     encode_events_plan(&output->plan, counter, &frames[8]);
     encode_scores(&output->scores, output->faults, counter, &frames[10]);
-    ENCODE(&frames[13], health, HEALTH, .counter = counter, .status = (uint8_t)output->status,
+    encode_foresight(&output->scores, &output->verdict, counter, &frames[13]);
+    encode_verdict(&output->verdict, counter, &frames[15]);
+    ENCODE(&frames[17], health, HEALTH, .counter = counter, .status = (uint8_t)output->status,
            .limits = (uint8_t)output->limits, .wire_version = SADDLE_WIRE_VERSION,
            .late_ticks = limited_u16(health->late_ticks),
            .rejected_frames = limited_u16(health->rejected_frames));

@@ -32,8 +32,8 @@
 /** Every frame is a classic CAN data frame of this many bytes with an 11-bit identifier. */
 #define SADDLE_WIRE_LENGTH 8u
 
-/** Frames of one output: the plan (10), the scores (3), and HEALTH as the last. */
-#define SADDLE_WIRE_OUTPUT_FRAMES 14u
+/** Frames of one output: the plan (10), the scores (5), the verdict (2), and HEALTH as the last. */
+#define SADDLE_WIRE_OUTPUT_FRAMES 18u
 
 /** Frames of one measurement: CoM, left foot, right foot. */
 #define SADDLE_WIRE_MEASURED_FRAMES 3u
