@@ -6,6 +6,7 @@
 #include <saddlewalk_command_t.h>
 #include <saddlewalk_plan_t.h>
 #include <saddlewalk_scores_t.h>
+#include <saddlewalk_verdict_t.h>
 #include <unistd.h>
 
 #define NM_PER_M 1e9
@@ -122,7 +123,7 @@ static saddlewalk_scores_t scores_message(const saddle_scores_t *scores, int64_t
 {
     return (saddlewalk_scores_t){
         .utime_us = utime_us,
-        .valid = (int32_t)scores->valid,
+        .valid = (int32_t)(scores->valid & ~(uint32_t)SADDLE_VALID_STOP), /* in verdict_t */
         .v_comp_m_s = result(scores, SADDLE_VALID_V_COMP, scores->v_comp_m_s),
         .s_pend = result(scores, SADDLE_VALID_STEP, scores->s_pend),
         .s_jump = result(scores, SADDLE_VALID_STEP, scores->s_jump),
@@ -134,6 +135,42 @@ static saddlewalk_scores_t scores_message(const saddle_scores_t *scores, int64_t
         .xcom_m = {result(scores, SADDLE_VALID_MOS_XCOM, scores->xcom_m.x),
                    result(scores, SADDLE_VALID_MOS_XCOM, scores->xcom_m.y)},
     };
+}
+
+static saddlewalk_verdict_t verdict_message(const saddle_scores_t *scores,
+                                            const saddle_verdict_t *verdict, int64_t utime_us)
+{
+    const saddle_recovery_t *recovery = &verdict->recovery;
+    saddlewalk_verdict_t message = {
+        .utime_us = utime_us,
+        .level = (int8_t)verdict->level,
+        .reason = (int8_t)verdict->reason,
+        .paper_stable = scores->paper_stable,
+        .compared = verdict->compared,
+        .can_stop = scores->can_stop,
+        .on_track = verdict->on_track,
+        .excess_stop_j = result(scores, SADDLE_VALID_STOP, scores->excess_stop_j),
+        .excess_track_j = NAN,
+        .ebos_com_m = NAN,
+        .ebos_xcom_m = NAN,
+        .xcom_deviation_m = {NAN, NAN},
+        .recovery_found = recovery->found,
+        .recovery_stops = recovery->stops,
+        .recovery_foot = (int8_t)recovery->foot,
+        .recovery_landing_m = {NAN, NAN},
+        .recovery_margin_m = NAN,
+    };
+    if (verdict->compared) {
+        message.excess_track_j = verdict->excess_track_j;
+        message.ebos_com_m = verdict->ebos_com_m;
+        message.ebos_xcom_m = verdict->ebos_xcom_m;
+        set2(message.xcom_deviation_m, verdict->xcom_deviation_m);
+        message.recovery_margin_m = recovery->margin_m;
+    }
+    if (verdict->compared && recovery->found) {
+        set2(message.recovery_landing_m, recovery->landing_m);
+    }
+    return message;
 }
 
 static saddlewalk_bos_t bos_message(const saddle_bos_t *bos, int64_t utime_us)
@@ -156,9 +193,13 @@ void saddle_lcm_publish(saddle_lcm_port_t *port, const saddle_output_t *output,
     }
     const saddlewalk_plan_t plan = plan_message(&output->plan, health->utime_us);
     const saddlewalk_scores_t scores = scores_message(&output->scores, health->utime_us);
+    const saddlewalk_verdict_t verdict =
+        verdict_message(&output->scores, &output->verdict, health->utime_us);
     const saddlewalk_bos_t bos = bos_message(&output->scores.bos, health->utime_us);
     port->not_sent += saddlewalk_plan_t_publish(port->lcm, "SADDLEWALK_PLAN", &plan) != 0;
     port->not_sent += saddlewalk_scores_t_publish(port->lcm, "SADDLEWALK_SCORES", &scores) != 0;
+    port->not_sent +=
+        saddlewalk_verdict_t_publish(port->lcm, "SADDLEWALK_VERDICT", &verdict) != 0;
     port->not_sent += saddlewalk_bos_t_publish(port->lcm, "SADDLEWALK_BOS", &bos) != 0;
     port->not_sent += saddlewalk_health_t_publish(port->lcm, "SADDLEWALK_HEALTH", health) != 0;
 }

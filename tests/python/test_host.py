@@ -20,7 +20,7 @@ from saddlewalk.wire import Receiver, Sender, frame_crc
 WAIT_S = 2.0  # for what must come
 SILENCE_S = 0.1  # for what must not
 TICK_S = 0.08
-MESSAGES_PER_TICK = 14
+MESSAGES_PER_TICK = 18
 STANDING_MODE, STARTING, WALKING = 0, 1, 2
 # A walk that comes to its speed within half a second.
 QUICK = ("--set=shift_time_s=0.1", "--set=acceleration_m_s2=5")
@@ -275,11 +275,13 @@ def test_realtime_ticks_every_80_ms_without_any_measurement():
 
 
 def test_realtime_uses_a_measurement_until_it_is_too_old():
-    with Host("--lcm", "none", "--set=measurement_max_age_s=0.2") as host:
+    with Host("--lcm", "none", "--set=com_max_age_s=0.2", "--set=foot_max_age_s=2") as host:
         host.measure()
-        margins = [host.tick()["SCORES_MARGIN"]["MOS_COM"] for _ in range(5)]
-        assert margins[0] > 0
-        assert math.isnan(margins[-1])
+        ticks = [host.tick() for _ in range(5)]
+        first, last = (tick["SCORES_MARGIN"] for tick in (ticks[0], ticks[-1]))
+        assert first["MOS_COM"] > 0 and first["MOS_XCOM"] > 0
+        assert last["MOS_COM"] == first["MOS_COM"] and math.isnan(last["MOS_XCOM"])
+        assert [ticks[-1]["VERDICT"][name] for name in ("LEVEL", "REASON")] == [0, 1]
 
 
 @pytest.mark.parametrize("clock", ["realtime", "lockstep"])
@@ -304,7 +306,7 @@ class LcmNode:
     def __init__(self, url: str) -> None:
         self.lcm = open_lcm(url)
         self.latest = {}
-        self.lcm.subscribe("SADDLEWALK_(PLAN|SCORES|BOS|HEALTH)", self._take).set_queue_capacity(
+        self.lcm.subscribe("SADDLEWALK_(PLAN|SCORES|VERDICT|BOS|HEALTH)", self._take).set_queue_capacity(
             1000
         )
 
@@ -349,11 +351,59 @@ def test_lcm_says_what_can_says():
         assert scores.mos_com_m == pytest.approx(
             on_can["SCORES_MARGIN"]["MOS_COM"], abs=1.01 * half_step
         )
+        assert_same_verdict(on_lcm["SADDLEWALK_VERDICT"], on_can)
+        assert len(on_lcm) == 5
         assert {message.utime_us for message in on_lcm.values()} == {4 * 80000}
         assert (health.tick, health.measurement_age_us, health.frames_accepted) == (4, 0, 16)
         assert health.can_transport == health.TRANSPORT_UDP
         assert bos.defined == 1
         assert max(bos.y_m) == pytest.approx(0.11, abs=0.01)
+
+
+def assert_same_verdict(verdict, on_can) -> None:
+    energy, expected = on_can["SCORES_ENERGY"], on_can["SCORES_EXPECTED"]
+    judged, recovery = on_can["VERDICT"], on_can["RECOVERY"]
+    codes = {
+        "level": judged["LEVEL"],
+        "reason": judged["REASON"],
+        "compared": judged["COMPARED"],
+        "paper_stable": energy["PAPER_STABLE"],
+        "can_stop": energy["CAN_STOP"],
+        "on_track": energy["ON_TRACK"],
+        "recovery_found": recovery["FOUND"],
+        "recovery_stops": recovery["STOPS"],
+        "recovery_foot": recovery["FOOT"],
+    }
+    assert {name: getattr(verdict, name) for name in codes} == codes
+    assert verdict.compared
+    energies_j = [verdict.excess_stop_j, verdict.excess_track_j]
+    assert energies_j == pytest.approx([energy["EXCESS_STOP"], energy["EXCESS_TRACK"]], abs=0.051)
+    lengths_m = [
+        (verdict.ebos_com_m, expected["EBOS_COM"]),
+        (verdict.ebos_xcom_m, expected["EBOS_XCOM"]),
+        (verdict.xcom_deviation_m[0], judged["XCOM_DEVIATION_X"]),
+        (verdict.xcom_deviation_m[1], judged["XCOM_DEVIATION_Y"]),
+        (verdict.recovery_landing_m[0], recovery["X"]),
+        (verdict.recovery_landing_m[1], recovery["Y"]),
+        (verdict.recovery_margin_m, recovery["MARGIN"]),
+    ]
+    for said, told in lengths_m:
+        assert said == pytest.approx(told, abs=0.51e-4, nan_ok=True)
+
+
+def test_the_verdict_by_lcm_has_no_numbers_where_there_are_none():
+    url = own_lcm()
+    with Host("--lcm", url, "--clock", "lockstep") as host:
+        node = LcmNode(url)
+        host.measure(STANDING | {"MEASURED_COM": {"HEIGHT": math.nan, "VX": 0.0, "VY": 0.0}})
+        on_can, verdict = host.tick(), node.take()["SADDLEWALK_VERDICT"]
+        assert (verdict.level, verdict.reason) == (verdict.LEVEL_UNKNOWN, verdict.REASON_INPUT)
+        assert not verdict.compared
+        numbers = [verdict.excess_stop_j, verdict.excess_track_j, verdict.recovery_margin_m]
+        numbers += [verdict.ebos_com_m, verdict.ebos_xcom_m]
+        numbers += [*verdict.xcom_deviation_m, *verdict.recovery_landing_m]
+        assert all(map(math.isnan, numbers))
+        assert math.isnan(on_can["SCORES_ENERGY"]["EXCESS_STOP"])
 
 
 def test_commands_by_lcm_and_the_newest_wins():
