@@ -69,7 +69,7 @@ static void test_field_names_belong_to_their_offsets(void)
     TEST_ASSERT_EQUAL_STRING(
         "half_step_slope_s",
         saddle_config_field(offsetof(saddle_config_t, half_step_slope_s) / sizeof(float))->name);
-    TEST_ASSERT_EQUAL_STRING("measurement_max_age_s", saddle_config_field(field_count() - 1)->name);
+    TEST_ASSERT_EQUAL_STRING("level_hold_ticks", saddle_config_field(field_count() - 1)->name);
 }
 
 static void test_every_field_out_of_range_is_named(void)

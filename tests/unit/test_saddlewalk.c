@@ -9,7 +9,9 @@ typedef enum { FLOATS, OTHER } kind_t;
     FIELD(scores.valid, OTHER), FIELD(scores.v_comp_m_s, FLOATS), FIELD(scores.s_pend, FLOATS),  \
         FIELD(scores.s_jump, FLOATS), FIELD(scores.s_sw, FLOATS),                                \
         FIELD(scores.mos_com_m, FLOATS), FIELD(scores.mos_xcom_m, FLOATS),                       \
-        FIELD(scores.gravity_n, FLOATS), FIELD(scores.xcom_m, FLOATS),                           \
+        FIELD(scores.gravity_n, FLOATS), FIELD(scores.excess_stop_j, FLOATS),                    \
+        FIELD(scores.can_stop, OTHER), FIELD(scores.paper_stable, OTHER),                        \
+        FIELD(scores.xcom_m, FLOATS),                                                            \
         FIELD(scores.bos.centre_m, FLOATS), FIELD(scores.bos.axis_x, FLOATS),                    \
         FIELD(scores.bos.radius_m, FLOATS), FIELD(scores.bos.half_depth_m, FLOATS),              \
         FIELD(scores.bos.defined, OTHER)
@@ -47,6 +49,19 @@ static const struct {
     FIELD(plan.landing_m, FLOATS),
     SCORES(plan_scores),
     SCORES(scores),
+    FIELD(verdict.level, OTHER),
+    FIELD(verdict.reason, OTHER),
+    FIELD(verdict.compared, OTHER),
+    FIELD(verdict.on_track, OTHER),
+    FIELD(verdict.excess_track_j, FLOATS),
+    FIELD(verdict.ebos_com_m, FLOATS),
+    FIELD(verdict.ebos_xcom_m, FLOATS),
+    FIELD(verdict.xcom_deviation_m, FLOATS),
+    FIELD(verdict.recovery.found, OTHER),
+    FIELD(verdict.recovery.stops, OTHER),
+    FIELD(verdict.recovery.foot, OTHER),
+    FIELD(verdict.recovery.landing_m, FLOATS),
+    FIELD(verdict.recovery.margin_m, FLOATS),
 };
 
 static saddle_config_t config;
@@ -291,6 +306,7 @@ static void test_stop_is_obeyed_whatever_its_numbers(void)
 static void test_standing_is_a_plan_of_both_feet_on_the_ground(void)
 {
     input.command = (saddle_command_t){.mode = SADDLE_COMMAND_STAND};
+    input.measurement.com.velocity_m_s = (saddle_vec2_t){0.0f, 0.0f};
     for (uint64_t t = 0; t < 1000000u; t += 80000u) {
         TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(t));
         TEST_ASSERT_TRUE(output.plan.valid);
@@ -300,7 +316,7 @@ static void test_standing_is_a_plan_of_both_feet_on_the_ground(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.0, output.plan.com_m.y);
         TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, output.plan.com_velocity_m_s.z);
         TEST_ASSERT_EQUAL_HEX32(SADDLE_VALID_MOS_COM | SADDLE_VALID_MOS_XCOM |
-                                    SADDLE_VALID_GRAVITY,
+                                    SADDLE_VALID_GRAVITY | SADDLE_VALID_STOP,
                                 output.scores.valid);
     }
 }
@@ -434,7 +450,38 @@ static void random_feet(uint32_t *state, const saddle_plan_t *plan, void *feet)
     memcpy(feet, any.foot, sizeof any.foot);
 }
 
-static void random_input(uint32_t *state, saddle_input_t *any)
+/* Now and then nothing comes anew: numbers that keep their bits. */
+static void random_measurement(uint32_t *state, saddle_measurement_t *any)
+{
+    if (random_bits(state) % 4u != 0u) {
+        any->com.height_m = random_float(state, 2.5f);
+        any->com.velocity_m_s.x = random_float(state, 6.0f);
+        any->com.velocity_m_s.y = random_float(state, 2.0f);
+        any->com.age_us = random_age(state);
+    }
+    if (random_bits(state) % 4u != 0u) {
+        random_feet(state, &output.plan, any->foot);
+    }
+}
+
+/* Near the plan's posture in number and time, so that all is compared and every level is met. */
+static void plausible_measurement(uint32_t *state, saddle_measurement_t *any)
+{
+    const saddle_plan_t *plan = &output.plan;
+    const float spread = random_bits(state) % 4u == 0u ? 1.0f : 0.1f;
+    any->com.height_m = config.pendulum_ratio * config.body_height_m;
+    any->com.velocity_m_s.x = plan->com_velocity_m_s.x + random_in(state, -spread, spread);
+    any->com.velocity_m_s.y = plan->com_velocity_m_s.y + random_in(state, -spread, spread);
+    any->com.age_us = 0;
+    for (int side = 0; side < 2; side++) {
+        any->foot[side].cop_m.x = plan->foot_m[side].x - plan->com_m.x;
+        any->foot[side].cop_m.y = plan->foot_m[side].y - plan->com_m.y;
+        any->foot[side].contact = side == (int)plan->support || !(plan->speed_m_s > 0.0f);
+        any->foot[side].age_us = 0;
+    }
+}
+
+static void random_input(uint32_t *state, bool plausible, saddle_input_t *any)
 {
     const uint32_t choice = random_bits(state) % 256u;
     if (choice == 0u) {
@@ -449,23 +496,20 @@ static void random_input(uint32_t *state, saddle_input_t *any)
         any->command.speed_m_s = random_float(state, 3.0f);
         any->command.heel_strike_rad = random_float(state, 0.6f);
     }
-    any->measurement.com.height_m = random_float(state, 2.5f);
-    any->measurement.com.velocity_m_s.x = random_float(state, 6.0f);
-    any->measurement.com.velocity_m_s.y = random_float(state, 2.0f);
-    any->measurement.com.age_us = random_age(state);
-    random_feet(state, &output.plan, any->measurement.foot);
+    if (plausible) {
+        plausible_measurement(state, &any->measurement);
+    } else {
+        random_measurement(state, &any->measurement);
+    }
 }
 
-static void assert_sound(const saddle_output_t *o)
+static void assert_sound_plan(const saddle_output_t *o)
 {
     const saddle_plan_t *plan = &o->plan;
     TEST_ASSERT_TRUE_MESSAGE(finite_output(o), "not finite");
     TEST_ASSERT_TRUE(o->status == SADDLE_OK || o->status == SADDLE_ERROR_TIME);
     TEST_ASSERT_EQUAL(o->status == SADDLE_OK, plan->valid);
     TEST_ASSERT_TRUE(o->limits < 1u << 5);
-    TEST_ASSERT_TRUE(o->faults < 1u << 9);
-    TEST_ASSERT_TRUE(o->scores.valid <= (uint32_t)SADDLE_VALID_ALL);
-    TEST_ASSERT_TRUE(o->plan_scores.valid <= (uint32_t)SADDLE_VALID_ALL);
     TEST_ASSERT_TRUE(plan->phase <= 3u && plan->support <= 1u && plan->mode <= 3u);
     TEST_ASSERT_TRUE(plan->theta_rad >= 0.0f && (double)plan->theta_rad < 2.0 * PI);
     TEST_ASSERT_TRUE(plan->speed_m_s >= 0.0f);
@@ -476,6 +520,85 @@ static void assert_sound(const saddle_output_t *o)
         TEST_ASSERT_TRUE(plan->com_m.z > 0.0f);
         TEST_ASSERT_TRUE(plan->leg_length_m > 0.0f);
     }
+}
+
+/* A score that is not valid is 0. */
+static void assert_sound_scores(const saddle_scores_t *scores)
+{
+    const struct {
+        uint32_t valid;
+        float number;
+    } numbers[] = {
+        {SADDLE_VALID_V_COMP, scores->v_comp_m_s}, {SADDLE_VALID_STEP, scores->s_pend},
+        {SADDLE_VALID_STEP, scores->s_jump},       {SADDLE_VALID_S_SW, scores->s_sw},
+        {SADDLE_VALID_MOS_COM, scores->mos_com_m}, {SADDLE_VALID_MOS_XCOM, scores->mos_xcom_m},
+        {SADDLE_VALID_GRAVITY, scores->gravity_n.x}, {SADDLE_VALID_GRAVITY, scores->gravity_n.y},
+        {SADDLE_VALID_STOP, scores->excess_stop_j},
+        {SADDLE_VALID_STOP, scores->can_stop ? 1.0f : 0.0f},
+    };
+    TEST_ASSERT_TRUE(scores->valid <= (uint32_t)SADDLE_VALID_ALL);
+    for (size_t i = 0; i < COUNT_OF(numbers); i++) {
+        TEST_ASSERT_TRUE((scores->valid & numbers[i].valid) != 0u || numbers[i].number == 0.0f);
+    }
+    TEST_ASSERT_TRUE(scores->bos.defined || scores->bos.radius_m == 0.0f);
+}
+
+static const uint32_t UNUSABLE =
+    SADDLE_FAULTS_COM | SADDLE_FAULTS_FEET | (uint32_t)SADDLE_FAULT_FEET_TOGETHER;
+
+static void assert_unusable_input_is_not_scored(const saddle_output_t *o)
+{
+    const uint32_t of_com = SADDLE_VALID_MOS_XCOM | SADDLE_VALID_STOP;
+    const uint32_t of_feet = of_com | SADDLE_VALID_S_SW | SADDLE_VALID_MOS_COM |
+                             SADDLE_VALID_GRAVITY;
+    if ((o->faults & SADDLE_FAULTS_COM) != 0u) {
+        TEST_ASSERT_EQUAL_HEX32(0, o->scores.valid & of_com);
+        TEST_ASSERT_TRUE(o->scores.xcom_m.x == 0.0f && o->scores.xcom_m.y == 0.0f);
+    }
+    if ((o->faults & SADDLE_FAULTS_FEET) != 0u) {
+        TEST_ASSERT_EQUAL_HEX32(0, o->scores.valid & of_feet);
+        TEST_ASSERT_FALSE(o->scores.bos.defined);
+    }
+    if ((o->faults & UNUSABLE) != 0u) {
+        TEST_ASSERT_EQUAL_UINT8(SADDLE_LEVEL_UNKNOWN, o->verdict.level);
+        TEST_ASSERT_EQUAL_UINT8(SADDLE_REASON_INPUT, o->verdict.reason);
+        TEST_ASSERT_FALSE(o->verdict.compared);
+    }
+}
+
+/* Each reason has its level; only a level that waits to be announced leaves the last reason. */
+static void assert_sound_verdict(const saddle_output_t *o)
+{
+    const saddle_verdict_t *verdict = &o->verdict;
+    const saddle_recovery_t *recovery = &verdict->recovery;
+    TEST_ASSERT_TRUE(verdict->level <= (uint8_t)SADDLE_LEVEL_UNSTABLE);
+    TEST_ASSERT_TRUE(verdict->reason <= (uint8_t)SADDLE_REASON_OFF_TRACK);
+    TEST_ASSERT_EQUAL(verdict->level == (uint8_t)SADDLE_LEVEL_CAUTION,
+                      verdict->reason >= (uint8_t)SADDLE_REASON_SPEED);
+    TEST_ASSERT_EQUAL(verdict->level == (uint8_t)SADDLE_LEVEL_UNSTABLE,
+                      verdict->reason == (uint8_t)SADDLE_REASON_NO_STEP);
+    TEST_ASSERT_TRUE(verdict->level != (uint8_t)SADDLE_LEVEL_STABLE ||
+                     verdict->reason == (uint8_t)SADDLE_REASON_NONE);
+    if (!verdict->compared) {
+        const saddle_output_t whole = {.verdict = *verdict};
+        const saddle_output_t nothing = {.verdict = {.reason = verdict->reason}};
+        TEST_ASSERT_TRUE(same_output(&nothing, &whole)); /* level unknown, and every number 0 */
+        return;
+    }
+    TEST_ASSERT_TRUE(recovery->foot <= 1u);
+    TEST_ASSERT_EQUAL(recovery->margin_m >= 0.0f, recovery->found);
+    TEST_ASSERT_TRUE(recovery->found || (!recovery->stops && recovery->landing_m.x == 0.0f &&
+                                         recovery->landing_m.y == 0.0f));
+}
+
+static void assert_sound(const saddle_output_t *o)
+{
+    TEST_ASSERT_TRUE(o->faults < 1u << 14);
+    assert_sound_plan(o);
+    assert_sound_scores(&o->plan_scores);
+    assert_sound_scores(&o->scores);
+    assert_unusable_input_is_not_scored(o);
+    assert_sound_verdict(o);
 }
 
 /* The plan between two ticks, wherever it is foretold. */
@@ -493,13 +616,16 @@ static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
     int stopping = 0;
     int valid_scores = 0;
     int refused = 0;
-    for (int k = 0; k < 100000; k++) {
+    uint32_t faults = 0;
+    int levels[SADDLE_LEVEL_UNSTABLE + 1] = {0};
+    int reasons[SADDLE_REASON_OFF_TRACK + 1] = {0};
+    for (int k = 0; k < 200000; k++) {
         if (k % 200 == 0) {
             config = random_config(&state);
             TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
             input = walking_input(random_bits(&state));
         }
-        random_input(&state, &input);
+        random_input(&state, k / 200 % 4 == 0, &input);
         prefill();
         const saddle_status_t status = saddle_tick(&context, &input, &output);
         TEST_ASSERT_EQUAL_INT(status, output.status);
@@ -511,12 +637,22 @@ static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
         stopping += output.plan.mode == (uint8_t)SADDLE_MODE_STOPPING ? 1 : 0;
         valid_scores += (output.scores.valid & SADDLE_VALID_MOS_XCOM) != 0u ? 1 : 0;
         refused += output.status != SADDLE_OK ? 1 : 0;
+        faults |= output.faults;
+        levels[output.verdict.level]++;
+        reasons[output.verdict.reason]++;
     }
     /* The bytes are hostile, but not so hostile that nothing is computed. */
     TEST_ASSERT_GREATER_THAN_INT(15000, walking);
     TEST_ASSERT_GREATER_THAN_INT(5000, stopping);
     TEST_ASSERT_GREATER_THAN_INT(5000, valid_scores);
     TEST_ASSERT_GREATER_THAN_INT(1000, refused);
+    TEST_ASSERT_EQUAL_HEX32((1u << 14) - 1u, faults); /* each was met */
+    for (size_t i = 0; i < COUNT_OF(levels); i++) {
+        TEST_ASSERT_GREATER_THAN_INT(5000, levels[i]);
+    }
+    for (size_t i = 0; i < COUNT_OF(reasons); i++) {
+        TEST_ASSERT_GREATER_THAN_INT(100, reasons[i]);
+    }
 }
 
 static saddle_plan_t plan_at(uint64_t time_us)
