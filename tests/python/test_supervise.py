@@ -11,9 +11,11 @@ import pytest
 
 from saddlewalk.cli import main
 from saddlewalk.commands.supervise import SCORE_COLUMNS, STATE_COLUMNS
-from twin import Twin, bos_margin
+from twin import GRAVITY, Twin, bos_margin
 
 TOLERANCE = 2e-5
+FAULTS_AND_LIMITS = 0xFFFFFF  # of the flags; above is the reason
+INPUT, NO_WALK, NO_STEP = 1, 2, 3
 DT_S = 0.08
 
 
@@ -81,7 +83,46 @@ def test_scores_equal_their_formulas(speed, capsys, tmp_path):
             # s_pend divides by a few centimetres: the same rounding weighs more.
             tolerance = 1e-4 if column.startswith("s_") else TOLERANCE
             assert float(row[column]) == pytest.approx(value, abs=tolerance), (column, k)
-        assert row["flags"] == "0x00000000"
+        assert int(row["flags"], 16) & FAULTS_AND_LIMITS == 0
+        assert row["level"] != "unknown"
+
+
+@pytest.mark.parametrize("speed", [0.9, 1.2, 1.6])
+def test_a_walk_as_planned_is_stable_and_where_it_is_expected(speed, capsys, tmp_path):
+    twin = Twin(speed, math.radians(10))
+    path = write(tmp_path / "states.csv", steady_walk(twin, 6))
+    for row in supervise(capsys, "--in", path, "--speed", str(speed)):
+        steps = twin.steps_taken(float(row["t_s"]))
+        sides = (1, -1) if steps % 2 == 0 else (-1, 1)
+        stance, landing = (
+            np.array([(steps + k) * twin.step, 0.5 * side * twin.width])
+            for k, side in enumerate(sides)
+        )
+        landing_s = (steps + 0.5) * twin.step_time
+        left, right = (stance, landing) if steps % 2 == 0 else (landing, stance)
+        for column, point in (
+            ("ebos_com_m", twin.com_xy(landing_s)),
+            ("ebos_xcom_m", twin.xcom(landing_s)),
+        ):
+            margin = bos_margin(left, right, twin.d_h, point)
+            assert float(row[column]) == pytest.approx(margin, abs=TOLERANCE)
+        assert row["can_stop"] == str(int(float(row["excess_stop_j"]) <= ankle_work_j(twin)))
+        assert row["on_track"] == str(int(float(row["excess_track_j"]) <= ankle_work_j(twin)))
+        assert (row["level"], row["flags"]) == ("stable", "0x00000000")
+
+
+def ankle_work_j(twin: Twin) -> float:
+    return twin.mass * GRAVITY * twin.d_h**2 / twin.pendulum
+
+
+def test_whom_no_step_can_catch_is_unstable(capsys, tmp_path):
+    states = steady_walk(Twin(1.2, 0.0), 5)
+    for state in states[-4:]:
+        state["com_vy_m_s"] += 2.0
+    scores = supervise(capsys, "--in", write(tmp_path / "states.csv", states), "--speed", "1.2")
+    assert [row["level"] for row in scores[:-4]] == ["stable"] * (len(states) - 4)
+    assert (scores[-1]["level"], scores[-1]["flags"]) == ("unstable", f"0x{NO_STEP:02x}000000")
+    assert scores[-1]["can_stop"] == scores[-1]["on_track"] == "0"
 
 
 def test_v_comp_is_the_mean_speed_of_the_last_step(capsys, tmp_path):
@@ -102,6 +143,9 @@ def test_speed_stands_in_until_a_step_is_complete(capsys, tmp_path):
     path = write(tmp_path / "states.csv", steady_walk(Twin(1.2, 0.0), 4))
     without = supervise(capsys, "--in", path)
     assert without[0]["v_comp_m_s"] == "" and without[0]["s_sw"] == ""
+    assert without[0]["level"] == "unknown" and int(without[0]["flags"], 16) >> 24 == NO_WALK
+    assert without[0]["ebos_com_m"] == without[0]["on_track"] == ""
+    assert without[0]["excess_stop_j"] != "" and without[0]["can_stop"] == "0"
     assert float(supervise(capsys, "--in", path, "--speed", "1.1")[0]["v_comp_m_s"]) == (
         pytest.approx(1.1)
     )
@@ -118,6 +162,7 @@ def test_infeasible_speed_gives_zero_and_a_flag(capsys, tmp_path):
 
 
 # Fault bits of saddle_fault_t and the columns that must stay empty.
+NEED_ALL = "ebos_com_m ebos_xcom_m excess_stop_j excess_track_j can_stop on_track".split()
 MISSING = [
     ("com_vx_m_s", "", 0x02, ["mos_xcom_m"]),
     ("com_vy_m_s", "nan", 0x02, ["mos_xcom_m"]),
@@ -145,9 +190,11 @@ def test_missing_or_absurd_measurement_is_flagged_and_gives_no_number(
     scores = supervise(capsys, "--in", write(tmp_path / "states.csv", states))
     assert len(scores) == len(states)
     assert int(scores[-2]["flags"], 16) & 0xFFFF == fault
-    assert all(scores[-2][name] == "" for name in empty)
-    assert scores[-1]["flags"] == "0x00000000"
-    assert all(math.isfinite(float(value)) for value in scores[-1].values() if "x" not in value)
+    assert int(scores[-2]["flags"], 16) >> 24 == INPUT and scores[-2]["level"] == "unknown"
+    assert all(scores[-2][name] == "" for name in [*empty, *NEED_ALL])
+    after = dict(scores[-1])
+    assert (after.pop("level"), after.pop("flags")) == ("stable", "0x00000000")
+    assert all(math.isfinite(float(value)) for value in after.values())
 
 
 def test_feet_together_is_flagged_not_divided_by(capsys, tmp_path):

@@ -9,13 +9,17 @@ from saddlewalk.config import add_body_options, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.options import speed
 from saddlewalk.table import Cell, read_series, write_table
+from saddlewalk.verdict import level_name
 
 STATE_COLUMNS = (
     "t_s com_x_m com_y_m com_z_m com_vx_m_s com_vy_m_s left_x_m left_y_m right_x_m right_y_m "
     "left_contact right_contact"
 ).split()
 LONGEST_S = 1e9
-SCORE_COLUMNS = "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m flags".split()
+SCORE_COLUMNS = (
+    "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m ebos_com_m ebos_xcom_m "
+    "excess_stop_j excess_track_j can_stop on_track level flags"
+).split()
 
 
 def add_parser(subparsers: Any) -> None:
@@ -90,11 +94,14 @@ def _contact(source: str, line: int, state: dict[str, float], column: str) -> bo
 def _row(t_s: float, output: Any) -> list[Cell]:
     from saddlewalk.core import library
 
-    core, scores = library(), output.scores
+    core, scores, verdict = library(), output.scores, output.verdict
 
     def scored(value: float, bit: int, faults_with_zero: int = 0) -> float | None:
         known = scores.valid & bit or output.faults & faults_with_zero
         return value if known else None
+
+    def compared(value: float) -> float | None:
+        return value if verdict.compared else None
 
     infeasible = core.SADDLE_FAULT_SPEED_INFEASIBLE
     return [
@@ -105,13 +112,17 @@ def _row(t_s: float, output: Any) -> list[Cell]:
         scored(scores.s_sw, core.SADDLE_VALID_S_SW),
         scored(scores.mos_com_m, core.SADDLE_VALID_MOS_COM),
         scored(scores.mos_xcom_m, core.SADDLE_VALID_MOS_XCOM),
+        compared(verdict.ebos_com_m),
+        compared(verdict.ebos_xcom_m),
+        scored(scores.excess_stop_j, core.SADDLE_VALID_STOP),
+        compared(verdict.excess_track_j),
+        scored(int(scores.can_stop), core.SADDLE_VALID_STOP),
+        compared(int(verdict.on_track)),
+        level_name(verdict.level),
         flags(output),
     ]
 
 
 def flags(output: Any) -> str:
-    """Hex: bits 0-15 saddle_fault_t, 16-23 saddle_limit_t, 24-31 the scores without a result."""
-    from saddlewalk.core import library
-
-    missing = ~output.scores.valid & library().SADDLE_VALID_ALL
-    return f"0x{output.faults | output.limits << 16 | missing << 24:08x}"
+    """Hex: bits 0-15 saddle_fault_t, 16-23 saddle_limit_t, 24-31 the saddle_reason_t."""
+    return f"0x{output.faults | output.limits << 16 | output.verdict.reason << 24:08x}"

@@ -1,0 +1,64 @@
+"""The supervisor's verdict in names and words, and as the cells of a table."""
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping
+
+from saddlewalk.table import Cell
+
+# By number: saddle_level_t, saddle_reason_t.
+LEVELS = ("unknown", "stable", "caution", "unstable")
+REASONS = {
+    "none": "",
+    "input": "a measurement is missing or cannot be believed",
+    "no_walk": "nothing is planned, and nobody was seen to stand or to complete a step",
+    "no_step": "no place within reach to step to",
+    "speed": "this body cannot walk at this speed",
+    "s_pend": "the steps are almost too short for this speed",
+    "s_jump": "the steps are almost too long for this speed",
+    "s_sw": "the body is too far to one side for the width of the step",
+    "xcom_ap": "forward motion departs from the expected",
+    "xcom_ml": "sideways motion departs from the expected",
+    "off_track": "more energy than the ankles can bring back to the plan's",
+}
+
+COLUMNS = (
+    "ebos_com_m ebos_xcom_m excess_stop_j excess_track_j can_stop on_track level reason".split()
+)
+
+
+def level_name(level: int) -> str:
+    return LEVELS[level] if 0 <= level < len(LEVELS) else f"level {level}"
+
+
+def reason_name(reason: int) -> str:
+    names = tuple(REASONS)
+    return names[reason] if 0 <= reason < len(names) else f"reason {reason}"
+
+
+def reason_words(reason: int) -> str:
+    """What decided the level, for people; empty if nothing is amiss."""
+    name = reason_name(reason)
+    return REASONS.get(name, name)
+
+
+def cells(signals: Mapping[str, float]) -> list[Cell]:
+    """In the order of COLUMNS, from a tick's score signals by their names on CAN."""
+    return [
+        *(signals[name] for name in ("EBOS_COM", "EBOS_XCOM", "EXCESS_STOP", "EXCESS_TRACK")),
+        known_bit(signals["CAN_STOP"], signals["EXCESS_STOP"]),
+        known_bit(signals["ON_TRACK"], signals["EXCESS_TRACK"]),
+        level_name(int(signals["LEVEL"])),
+        reason_name(int(signals["REASON"])),
+    ]
+
+
+def known_bit(bit: float, number: float) -> int | None:
+    """A bit that says something while its number does."""
+    return None if math.isnan(number) else int(bit)
+
+
+def ticks_in(levels: Iterable[str]) -> dict[str, int]:
+    """How many of the names are each level's, from stable to unstable and unknown last."""
+    counts = Counter(levels)
+    return {name: counts[name] for name in (*LEVELS[1:], LEVELS[0])}
