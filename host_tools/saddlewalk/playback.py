@@ -10,12 +10,10 @@ import numpy as np
 
 from saddlewalk.errors import UserError
 from saddlewalk.recording import Recording
-from saddlewalk.ticks import SCORE_MESSAGES, TICK_S, Messages, TickReader, next_tick
+from saddlewalk.ticks import TICK_S, Messages, Signals, TickReader, next_tick, scores_of
 from saddlewalk.wire import Sender
 
 ANSWER_TIMEOUT_S = 2.0
-
-Signals = dict[str, float]
 
 
 def measurements(recording: Recording, contact: np.ndarray) -> Iterator[tuple[float, Messages]]:
@@ -64,7 +62,7 @@ def play_lockstep(
                 f"{ANSWER_TIMEOUT_S:g} s: {reader.receiver.accepted} frames came whole, "
                 f"{reader.receiver.rejected} were refused"
             )
-        yield time_s, _scores(messages)
+        yield time_s, scores_of(messages)
 
 
 def play_realtime(
@@ -77,7 +75,7 @@ def play_realtime(
         _send(bus, sender, measured)
         due_s = start_s + time_s + TICK_S
         while messages := next_tick(bus, reader.feed, due_s - time.monotonic()):
-            yield time_s, _scores(messages)
+            yield time_s, scores_of(messages)
 
 
 def _send(bus: can.BusABC, sender: Sender, messages: Messages) -> None:
@@ -85,7 +83,3 @@ def _send(bus: can.BusABC, sender: Sender, messages: Messages) -> None:
     for name, signals in messages.items():
         with contextlib.suppress(can.CanOperationError):
             bus.send(sender.frame(name, **signals))
-
-
-def _scores(messages: Messages) -> Signals:
-    return {name: value for part in SCORE_MESSAGES for name, value in messages[part].items()}

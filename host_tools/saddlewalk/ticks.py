@@ -12,10 +12,18 @@ PLAN_MESSAGES = (
     "PLAN_COM PLAN_COM_VELOCITY PLAN_LEFT PLAN_RIGHT PLAN_SWING PLAN_LANDING PLAN_ANKLE PLAN_STEP "
     "PLAN_EVENTS PLAN_PITCH"
 ).split()
-SCORE_MESSAGES = "SCORES_STEP SCORES_MARGIN SCORES_FORCE".split()
+SCORE_MESSAGES = (
+    "SCORES_STEP SCORES_MARGIN SCORES_FORCE SCORES_ENERGY SCORES_EXPECTED VERDICT RECOVERY"
+).split()
 MESSAGES = {*PLAN_MESSAGES, *SCORE_MESSAGES, "HEALTH"}
 
-Messages = dict[str, dict[str, float]]  # message name -> signal name -> value
+Signals = dict[str, float]
+Messages = dict[str, Signals]  # message name -> signal name -> value
+
+
+def scores_of(messages: Messages) -> Signals:
+    """All signals of SCORE_MESSAGES, no two of which share a name but COUNTER."""
+    return {name: value for part in SCORE_MESSAGES for name, value in messages[part].items()}
 
 
 class TickReader:

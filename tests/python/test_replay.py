@@ -23,6 +23,7 @@ from saddlewalk.errors import UserError
 from saddlewalk.gait_events import analyse
 from saddlewalk.paths import CHECKOUT
 from saddlewalk.playback import measurements, play_lockstep, play_realtime
+from saddlewalk.table import format_cell
 from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages
 from saddlewalk.wire import Receiver, Sender
 from synthetic_walk import Walk, csv_text
@@ -82,15 +83,26 @@ class OfflineFirmware:
                 self._answers.append(self._sender.frame(name, **values))
 
     @staticmethod
-    def _messages(output) -> dict[str, dict[str, float]]:
+    def _messages(output) -> Messages:
         scores, core = output.scores, library()
 
         def valid(value: float, bit: int, also: int = 0) -> float:
             return value if scores.valid & bit or also else math.nan
 
         infeasible = output.faults & core.SADDLE_FAULT_SPEED_INFEASIBLE
+        stop = core.SADDLE_VALID_STOP
         return {
             **NO_PLAN,
+            **judgement(output.verdict),
+            "SCORES_ENERGY": {
+                "CAN_STOP": scores.can_stop,
+                "ON_TRACK": output.verdict.on_track,
+                "PAPER_STABLE": scores.paper_stable,
+                "EXCESS_STOP": valid(scores.excess_stop_j, stop),
+                "EXCESS_TRACK": output.verdict.excess_track_j
+                if output.verdict.compared
+                else math.nan,
+            },
             "SCORES_STEP": {
                 "S_PEND": valid(scores.s_pend, core.SADDLE_VALID_STEP, infeasible),
                 "S_JUMP": valid(scores.s_jump, core.SADDLE_VALID_STEP, infeasible),
@@ -108,6 +120,36 @@ class OfflineFirmware:
             },
             "HEALTH": {"STATUS": 0, "LIMITS": 0, "LATE_TICKS": 0, "REJECTED_FRAMES": 0},
         }
+
+
+def judgement(verdict) -> Messages:
+    """What needs a walk to compare with."""
+    recovery, deviation_m = verdict.recovery, verdict.xcom_deviation_m
+
+    def compared(value: float, also: bool = True) -> float:
+        return value if verdict.compared and also else math.nan
+
+    return {
+        "SCORES_EXPECTED": {
+            "EBOS_COM": compared(verdict.ebos_com_m),
+            "EBOS_XCOM": compared(verdict.ebos_xcom_m),
+        },
+        "VERDICT": {
+            "COMPARED": verdict.compared,
+            "LEVEL": verdict.level,
+            "REASON": verdict.reason,
+            "XCOM_DEVIATION_X": compared(deviation_m.x),
+            "XCOM_DEVIATION_Y": compared(deviation_m.y),
+        },
+        "RECOVERY": {
+            "FOUND": recovery.found,
+            "STOPS": recovery.stops,
+            "FOOT": recovery.foot,
+            "X": compared(recovery.landing_m.x, recovery.found),
+            "Y": compared(recovery.landing_m.y, recovery.found),
+            "MARGIN": compared(recovery.margin_m),
+        },
+    }
 
 
 def sets_of(walk: Walk) -> list[tuple[float, Messages]]:
@@ -233,9 +275,12 @@ def test_the_host_answers_as_the_core_fed_offline_with_the_same_frames(capsys, t
         written = list(csv.DictReader(file))
     assert list(written[0]) == SCORE_COLUMNS
     for line, row in zip(written, rows, strict=True):
-        values = [float(line[name] or "nan") for name in SCORE_COLUMNS[:-1]]
-        assert np.array_equal(values, row[:-1], equal_nan=True)
-        assert line["faults"] == row[-1]
+        assert list(line.values()) == [format_cell(cell) for cell in row]
+    levels = [line["level"] for line in written]
+    assert levels[12] == "unknown" and written[12]["reason"] == "input"
+    assert {"stable", "caution"} & set(levels)
+    for name in ("stable", "caution", "unstable", "unknown"):
+        assert float(printed[name]) == pytest.approx(100 * levels.count(name) / 51, abs=0.01)
 
 
 def test_a_replay_gives_the_same_bits_each_time(capsys, tmp_path):

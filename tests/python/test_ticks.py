@@ -39,16 +39,32 @@ def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
         "SCORES_STEP": {"S_PEND": 1.0, "S_JUMP": 1.0, "S_SW": 1.0},
         "SCORES_MARGIN": {"MOS_COM": 0.1, "MOS_XCOM": 0.1, "V_COMP": 1.2},
         "SCORES_FORCE": {"GRAVITY_X": 0.0, "GRAVITY_Y": 0.0, "FAULTS": 0},
+        "SCORES_ENERGY": {
+            "CAN_STOP": 0,
+            "ON_TRACK": 1,
+            "PAPER_STABLE": 1,
+            "EXCESS_STOP": 40.0,
+            "EXCESS_TRACK": 0.0,
+        },
+        "SCORES_EXPECTED": {"EBOS_COM": 0.1, "EBOS_XCOM": 0.1},
+        "VERDICT": {
+            "COMPARED": 1,
+            "LEVEL": 1,
+            "REASON": 0,
+            "XCOM_DEVIATION_X": 0.0,
+            "XCOM_DEVIATION_Y": 0.0,
+        },
+        "RECOVERY": {"FOUND": 1, "STOPS": 0, "FOOT": 1, "X": 0.7, "Y": -0.1, "MARGIN": 0.2},
         "HEALTH": {"STATUS": 0, "LIMITS": 0, "LATE_TICKS": 0, "REJECTED_FRAMES": 0},
     }
     return [sender.frame(name, **signals) for name, signals in values.items()]
 
 
-@pytest.mark.parametrize("lost", range(14))
+@pytest.mark.parametrize("lost", range(18))
 def test_a_tick_with_a_lost_frame_is_not_used(lost):
     sender, reader = Sender(), TickReader()
     first, second, third = (tick_frames(sender) for _ in range(3))
-    assert [reader.feed(frame) is not None for frame in first] == [False] * 13 + [True]
+    assert [reader.feed(frame) is not None for frame in first] == [False] * 17 + [True]
     assert not any(reader.feed(frame) for frame in second[:lost] + second[lost + 1 :])
     heard = [reader.feed(frame) for frame in third]
     assert plan_of(heard[-1]).speed_m_s == pytest.approx(1.2) and not any(heard[:-1])
@@ -88,6 +104,6 @@ def test_a_tick_that_waits_is_taken_even_when_time_is_up():
             return next(frames, None)
 
     bus, reader = Waiting(), TickReader()
-    assert [next_tick(bus, reader.feed, -1.0) is not None for _ in range(14)] == [False] * 13 + [
+    assert [next_tick(bus, reader.feed, -1.0) is not None for _ in range(18)] == [False] * 17 + [
         True
     ]

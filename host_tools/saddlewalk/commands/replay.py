@@ -5,6 +5,7 @@ import math
 import sys
 from typing import TYPE_CHECKING, Any
 
+from saddlewalk import verdict
 from saddlewalk.config import add_body_options
 
 if TYPE_CHECKING:
@@ -14,7 +15,8 @@ if TYPE_CHECKING:
     from saddlewalk.recording import Recording
 
 SAMPLE_NAMES = ("healthy", "stroke")
-SCORE_COLUMNS = "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m faults".split()
+NUMBER_COLUMNS = "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m".split()
+SCORE_COLUMNS = [*NUMBER_COLUMNS, *verdict.COLUMNS, "faults"]
 
 
 def add_parser(subparsers: Any) -> None:
@@ -79,15 +81,22 @@ def _load(args: argparse.Namespace) -> "Recording":
 def score_row(time_s: float, scores: dict[str, float]) -> list:
     """One line of --out, in the order of SCORE_COLUMNS."""
     names = ("V_COMP", "S_PEND", "S_JUMP", "S_SW", "MOS_COM", "MOS_XCOM")
-    return [round(time_s, 6), *(scores[name] for name in names), f"0x{scores['FAULTS']:04x}"]
+    return [
+        round(time_s, 6),
+        *(scores[name] for name in names),
+        *verdict.cells(scores),
+        f"0x{scores['FAULTS']:04x}",
+    ]
 
 
 def report(recording: "Recording", gait: "Gait", rows: list[list]) -> list[str]:
     """Lines `name value unit`: the walk from the markers, the rest from the firmware's scores."""
     import numpy as np
 
-    columns = dict(zip(SCORE_COLUMNS[:-1], np.array([row[:-1] for row in rows]).T, strict=True))
+    numbers = np.array([row[: len(NUMBER_COLUMNS)] for row in rows])
+    columns = dict(zip(NUMBER_COLUMNS, numbers.T, strict=True))
     scored = np.isfinite(columns["mos_com_m"])
+    levels = verdict.ticks_in(row[SCORE_COLUMNS.index("level")] for row in rows)
     return [
         f"source {recording.source}",
         _line("duration", recording.duration_s, "s"),
@@ -97,6 +106,7 @@ def report(recording: "Recording", gait: "Gait", rows: list[list]) -> list[str]:
         _line("min_s_sw", _least(columns["s_sw"])),
         _line("com_in_bos", _share_positive(columns["mos_com_m"]), "%"),
         _line("xcom_in_bos", _share_positive(columns["mos_xcom_m"]), "%"),
+        *(_line(name, 100.0 * ticks / len(rows), "%") for name, ticks in levels.items()),
         f"ticks_scored {scored.sum()}",
         f"ticks {len(rows)}",
     ]
