@@ -1,8 +1,9 @@
 """What the firmware says about one walk, for people: `render` for a terminal, `summary` as a line.
 
-Both take LCM messages (plan_t, scores_t, health_t, or None while one has not come) and how long the
-firmware has been silent. They draw what the messages hold and judge nothing: colour repeats the
-sign of a number and is never the only sign of anything.
+Both take LCM messages (plan_t, scores_t, verdict_t, health_t, or None while one has not come) and
+how long the firmware has been silent. They draw what the messages hold and judge nothing, except
+that silence makes the level unknown. Colour repeats a word or the sign of a number and is never the
+only sign of anything.
 """
 
 import math
@@ -13,6 +14,8 @@ from rich.table import Table
 from rich.text import Text
 
 from saddlewalk.core import TIME_MAX_S
+from saddlewalk.letters import large
+from saddlewalk.verdict import LEVELS, level_name, reason_words
 
 SILENT_AFTER_S = 1.0
 
@@ -37,33 +40,65 @@ FAULTS = (
     "RIGHT_RANGE",
     "FEET_TOGETHER",
     "SPEED_INFEASIBLE",
+    "COM_FROZEN",
+    "LEFT_FROZEN",
+    "RIGHT_FROZEN",
+    "AIRBORNE",
+    "FEET_CROSSED",
 )
 
 SCORES = (("S_pend", "s_pend"), ("S_jump", "s_jump"), ("S_SW", "s_sw"))
 MARGINS = (("CoM in BoS", "mos_com_m"), ("XCoM in BoS", "mos_xcom_m"))
+EXPECTED = (("CoM in E-BoS", "ebos_com_m"), ("XCoM in E-BoS", "ebos_xcom_m"))
+LEVEL_STYLES = dict(zip(LEVELS, ("magenta", "green", "yellow", "red"), strict=True))
 MARGIN_SCALE_M = 0.4
 BAR_CELLS = 25
 NOT_AVAILABLE = "n/a"
 
 
-def render(plan, scores, health, silent_s: float = 0.0) -> RenderableType:
-    """A panel with gait phase, scores, margins and health; its border says when data are old."""
-    if plan is None and scores is None and health is None:
+def render(plan, scores, verdict, health, silent_s: float = 0.0) -> RenderableType:
+    """A panel: the level, large, and what decided it; gait, scores, margins, energy and health."""
+    if all(message is None for message in (plan, scores, verdict, health)):
         return Panel(Text(waiting(silent_s)), title="saddlewalk", border_style="yellow")
-    silent = silent_s > SILENT_AFTER_S
-    parts = [Text(gait(plan)), _levels(scores), Text(condition(health))]
-    if silent:
-        parts.append(Text(waiting(silent_s), style="bold red"))
-    border = "red" if silent else "green"
-    return Panel(Group(*parts), title="saddlewalk", border_style=border)
+    level, words = announced(verdict, silent_s)
+    style = LEVEL_STYLES.get(level, "")
+    parts = [
+        Text(large(level.upper()), style=f"bold {style}"),
+        Text(f"level: {level}{words and f', {words}'}", style="bold"),
+        Text(gait(plan)),
+        _bars(scores, verdict),
+        Text(f"energy: {energy(verdict)}"),
+        Text(f"recovery step: {recovery_step(verdict)}"),
+        Text(condition(health)),
+    ]
+    return Panel(Group(*parts), title="saddlewalk", border_style=style)
 
 
-def summary(plan, scores, health, silent_s: float = 0.0) -> str:
+def summary(plan, scores, verdict, health, silent_s: float = 0.0) -> str:
     """The same on one line of plain text."""
-    if silent_s > SILENT_AFTER_S or (plan is None and scores is None and health is None):
+    nothing = all(message is None for message in (plan, scores, verdict, health))
+    if silent_s > SILENT_AFTER_S or nothing:
         return waiting(silent_s)
-    numbers = [f"{label} {_number(scores, name)}" for label, name in (*SCORES, *MARGINS)]
-    return " | ".join((gait(plan), "  ".join(numbers), condition(health)))
+    level, words = announced(verdict, silent_s)
+    return " | ".join(
+        (
+            f"{level.upper()}{words and f': {words}'}",
+            gait(plan),
+            "  ".join(f"{label} {_number(*of)}" for label, *of in _numbers(scores, verdict)),
+            f"energy: {energy(verdict)}",
+            f"recovery step: {recovery_step(verdict)}",
+            condition(health),
+        )
+    )
+
+
+def announced(verdict, silent_s: float) -> tuple[str, str]:
+    """The level and what decided it, in words. What is old is not known any more."""
+    if silent_s > SILENT_AFTER_S:
+        return LEVELS[0], waiting(silent_s)
+    if verdict is None:
+        return LEVELS[0], "no verdict yet"
+    return level_name(verdict.level), reason_words(verdict.reason)
 
 
 def waiting(silent_s: float) -> str:
@@ -90,6 +125,39 @@ def gait(plan) -> str:
 def _heel_strike(plan) -> str:
     foreseen = plan.time_to_heel_strike_s < TIME_MAX_S
     return f"heel strike in {plan.time_to_heel_strike_s:.2f} s" if foreseen else "no heel strike"
+
+
+def energy(verdict) -> str:
+    """What there is beyond a stop and beyond the plan, and whether the ankles can take it."""
+    if verdict is None:
+        return NOT_AVAILABLE
+    parts = (
+        (verdict.excess_stop_j, "to stop", verdict.can_stop),
+        (verdict.excess_track_j, "to the plan", verdict.on_track),
+    )
+    return ", ".join(
+        f"{what} {NOT_AVAILABLE}"
+        if math.isnan(excess_j)
+        else f"{what} {excess_j:+.1f} J ({'within' if absorbed else 'beyond'} the ankles' work)"
+        for excess_j, what, absorbed in parts
+    )
+
+
+def recovery_step(verdict) -> str:
+    """Where to put which foot, or that no place within reach will do."""
+    if verdict is None or not verdict.compared:
+        return NOT_AVAILABLE
+    if not verdict.recovery_found:
+        return f"none within reach, {-verdict.recovery_margin_m:.2f} m lacking"
+    feet = ("left", "right")
+    foot = verdict.recovery_foot == verdict.RIGHT
+    x_m, y_m = verdict.recovery_landing_m
+    return (
+        f"{feet[foot]} foot {abs(x_m):.2f} m {'behind' if x_m < 0 else 'ahead'} and "
+        f"{abs(y_m):.2f} m to the {'right' if y_m < 0 else 'left'} of the {feet[not foot]} one, "
+        f"{verdict.recovery_margin_m:.2f} m of reach left"
+        + (", ends the walk" if verdict.recovery_stops else "")
+    )
 
 
 def condition(health) -> str:
@@ -131,21 +199,24 @@ def _status_name(status: int) -> str:
     return STATUSES[status] if 0 <= status < len(STATUSES) else str(status)
 
 
-def _levels(scores) -> Table:
+def _numbers(scores, verdict) -> list[tuple[str, object, str]]:
+    """(label, message, field) of what is shown as a bar."""
+    named = [(scores, SCORES), (scores, MARGINS), (verdict, EXPECTED)]
+    return [(label, message, name) for message, names in named for label, name in names]
+
+
+def _bars(scores, verdict) -> Table:
     table = Table.grid(padding=(0, 1))
-    table.add_column(min_width=12)
+    table.add_column(min_width=13)
     table.add_column()
     table.add_column(justify="right", min_width=8)
-    for label, name in SCORES:
-        value = _value(scores, name)
-        table.add_row(label, level_bar(value), _number(scores, name))
-    for label, name in MARGINS:
-        value = _value(scores, name)
-        table.add_row(label, margin_bar(value), _number(scores, name))
+    for label, message, name in _numbers(scores, verdict):
+        bar = margin_bar if name.endswith("_m") else score_bar
+        table.add_row(label, bar(_value(message, name)), _number(message, name))
     return table
 
 
-def level_bar(value: float) -> Text:
+def score_bar(value: float) -> Text:
     """A score: empty at 0 (the limit of stability) and below, full at 1 (the reference)."""
     if math.isnan(value):
         return Text("·" * BAR_CELLS, style="dim")
@@ -164,12 +235,12 @@ def margin_bar(value_m: float) -> Text:
     return Text(f"{left}│{right}", style="cyan")
 
 
-def _value(scores, name: str) -> float:
-    return math.nan if scores is None else getattr(scores, name)
+def _value(message, name: str) -> float:
+    return math.nan if message is None else getattr(message, name)
 
 
-def _number(scores, name: str) -> str:
-    value = _value(scores, name)
+def _number(message, name: str) -> str:
+    value = _value(message, name)
     if math.isnan(value):
         return NOT_AVAILABLE
     return f"{value:+.3f} m" if name.endswith("_m") else f"{value:.2f}"

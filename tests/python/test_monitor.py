@@ -15,8 +15,10 @@ import pytest
 from rich.console import Console
 
 from saddlewalk import core, dashboard, paths
+from saddlewalk import verdict as verdicts
 from saddlewalk.commands.monitor import CHANNELS, Listener
-from saddlewalk.lcm_types import health_t, plan_t, scores_t
+from saddlewalk.lcm_types import health_t, plan_t, scores_t, verdict_t
+from saddlewalk.letters import large
 
 MONITOR = [
     sys.executable,
@@ -45,6 +47,17 @@ def scores() -> scores_t:
     return message
 
 
+def verdict() -> verdict_t:
+    message = verdict_t()
+    message.level, message.reason = verdict_t.LEVEL_CAUTION, verdict_t.REASON_XCOM_ML
+    message.compared = message.on_track = message.recovery_found = 1
+    message.excess_stop_j, message.excess_track_j = 31.24, -4.5
+    message.ebos_com_m, message.ebos_xcom_m = 0.097, -0.031
+    message.recovery_foot = verdict_t.RIGHT
+    message.recovery_landing_m, message.recovery_margin_m = [0.703, -0.148], 0.214
+    return message
+
+
 def health() -> health_t:
     message = health_t()
     message.tick, message.measurement_age_us, message.late_ticks = 512, 4200, 3
@@ -60,40 +73,103 @@ def drawn(*view, **kwargs) -> str:
 
 SHOWN = ["phase 2", "60% of the stride", "right", "1.20 m/s", "0.31 s", "0.62", "1.25", "n/a"]
 SHOWN += ["+0.083 m", "-0.214 m", "data age 4 ms", "late ticks 3", "frames rejected 7"]
-SHOWN += ["plan: walking", "tick 512"]
+SHOWN += ["plan: walking", "tick 512", "+0.097 m", "-0.031 m"]
+SHOWN += ["sideways motion departs from the expected"]
+SHOWN += ["to stop +31.2 J (beyond the ankles' work)", "to the plan -4.5 J (within"]
+SHOWN += ["right foot 0.70 m ahead and 0.15 m to the right of the left one, 0.21 m of reach left"]
 
 
 @pytest.mark.parametrize("text", SHOWN)
 def test_every_number_is_shown_drawn_or_as_a_line(text):
-    assert text in drawn(plan(), scores(), health())
-    assert text in dashboard.summary(plan(), scores(), health())
+    assert text in drawn(plan(), scores(), verdict(), health())
+    assert text in dashboard.summary(plan(), scores(), verdict(), health())
 
 
 def test_the_line_is_one_line():
-    assert "\n" not in dashboard.summary(plan(), scores(), health())
+    assert "\n" not in dashboard.summary(plan(), scores(), verdict(), health())
 
 
 @pytest.mark.parametrize("silent_s", [0.0, 1.0])
 def test_fresh_data_are_not_called_old(silent_s):
-    assert "no message" not in drawn(plan(), scores(), health(), silent_s=silent_s)
-    assert "no message" not in dashboard.summary(plan(), scores(), health(), silent_s)
+    assert "no message" not in drawn(plan(), scores(), verdict(), health(), silent_s=silent_s)
+    assert "no message" not in dashboard.summary(plan(), scores(), verdict(), health(), silent_s)
 
 
 def test_silence_of_more_than_a_second_is_said():
     words = "no message from the firmware for 1.4 s"
-    assert words in drawn(plan(), scores(), health(), silent_s=1.4)
-    assert words in dashboard.summary(plan(), scores(), health(), 1.4)
-    assert words in drawn(None, None, None, silent_s=1.4)
+    assert words in drawn(plan(), scores(), verdict(), health(), silent_s=1.4)
+    assert words in dashboard.summary(plan(), scores(), verdict(), health(), 1.4)
+    assert words in drawn(None, None, None, None, silent_s=1.4)
 
 
-@pytest.mark.parametrize("missing", range(3))
+@pytest.mark.parametrize("missing", range(4))
 def test_a_channel_that_is_silent_hides_no_other(missing):
-    view = [plan(), scores(), health()]
+    view = [plan(), scores(), verdict(), health()]
     view[missing] = None
     text = drawn(*view)
     assert ("phase 2" in text) == (missing != 0)
     assert ("0.62" in text) == (missing != 1)
-    assert ("tick 512" in text) == (missing != 2)
+    assert ("+0.097 m" in text and "31.2 J" in text) == (missing != 2)
+    assert ("tick 512" in text) == (missing != 3)
+
+
+def test_the_level_comes_first_and_large_and_in_words():
+    text = drawn(plan(), scores(), verdict(), health())
+    rows = [line.strip("│ ") for line in text.splitlines()[1:5]]
+    assert rows == [
+        *(row.strip() for row in large("CAUTION").splitlines()),
+        "level: caution, sideways motion departs from the expected",
+    ]
+    assert dashboard.summary(plan(), scores(), verdict(), health()).startswith("CAUTION: sideways")
+
+
+@pytest.mark.parametrize("name", verdicts.LEVELS)
+def test_every_level_can_be_written_large(name):
+    rows = large(name.upper()).splitlines()
+    assert len(rows) == 3 and len({len(row) for row in rows}) == 1
+
+
+def test_a_level_without_a_reason_stands_alone():
+    message = verdict()
+    message.level, message.reason = verdict_t.LEVEL_STABLE, verdict_t.REASON_NONE
+    assert "level: stable\n" in re.sub(r" *│", "", drawn(plan(), scores(), message, health()))
+    assert dashboard.summary(plan(), scores(), message, health()).startswith("STABLE | plan:")
+
+
+def test_an_old_level_is_not_shown():
+    text = drawn(plan(), scores(), verdict(), health(), silent_s=1.4)
+    assert "level: unknown, no message from the firmware for 1.4 s" in text
+    assert "caution" not in text.lower()
+    assert large("CAUTION").splitlines()[0] not in text
+
+
+def test_a_level_and_a_reason_of_other_firmware_are_given_by_number():
+    message = verdict()
+    message.level, message.reason = 9, 99
+    assert "level: level 9, reason 99" in drawn(plan(), scores(), message, health())
+
+
+def test_no_recovery_step_is_said_and_by_how_much():
+    message = verdict()
+    message.recovery_found, message.recovery_margin_m = 0, -0.12
+    assert dashboard.recovery_step(message) == "none within reach, 0.12 m lacking"
+    message.compared = 0
+    assert dashboard.recovery_step(message) == "n/a"
+
+
+def test_a_recovery_step_back_to_the_left_that_ends_the_walk():
+    message = verdict()
+    message.recovery_foot, message.recovery_stops = verdict_t.LEFT, 1
+    message.recovery_landing_m = [-0.2, 0.3]
+    told = dashboard.recovery_step(message)
+    assert "left foot 0.20 m behind and 0.30 m to the left of the right one" in told
+    assert told.endswith(", ends the walk")
+
+
+def test_energies_that_are_not_known_are_not_judged():
+    message = verdict()
+    message.excess_stop_j = message.excess_track_j = math.nan
+    assert dashboard.energy(message) == "to stop n/a, to the plan n/a"
 
 
 def test_a_failed_tick_is_said_and_no_numbers_of_a_plan():
@@ -130,12 +206,20 @@ def test_faults_limits_and_status_are_named():
         ("saddlewalk.h", r"SADDLE_(ERROR_\w+) = \d", dashboard.STATUSES[1:]),
         ("planner.h", r"SADDLE_MODE_(\w+) = \d", tuple(map(str.upper, dashboard.MODES))),
         ("planner.h", r"SADDLE_LIMIT_(\w+) = 1u << \d", dashboard.LIMITS),
-        ("supervisor.h", r"SADDLE_FAULT_(\w+) = 1u << \d", dashboard.FAULTS),
+        ("measurement.h", r"SADDLE_FAULT_(\w+) = 1u << \d", dashboard.FAULTS),
+        ("supervisor.h", r"SADDLE_LEVEL_(\w+) = \d", tuple(map(str.upper, verdicts.LEVELS))),
+        ("supervisor.h", r"SADDLE_REASON_(\w+) = \d", tuple(map(str.upper, verdicts.REASONS))),
     ],
 )
 def test_names_are_those_of_the_core(header, numbered, names):
     text = (paths.CHECKOUT / "firmware/core/include/saddlewalk" / header).read_text()
     assert re.findall(numbered, text) == list(names)
+
+
+def test_lcm_has_the_same_levels_and_reasons():
+    for kind, names in (("LEVEL", verdicts.LEVELS), ("REASON", verdicts.REASONS)):
+        for number, name in enumerate(names):
+            assert getattr(verdict_t, f"{kind}_{name.upper()}") == number
 
 
 def test_the_longest_time_is_that_of_the_core():
@@ -147,8 +231,8 @@ def test_the_longest_time_is_that_of_the_core():
 @pytest.mark.parametrize(
     ("value", "full"), [(-3.0, 0), (0.0, 0), (0.5, 12), (1.0, 25), (7.0, 25), (math.inf, 25)]
 )
-def test_a_level_is_full_at_the_reference_and_empty_at_the_limit(value, full):
-    bar = dashboard.level_bar(value).plain
+def test_a_score_is_full_at_the_reference_and_empty_at_the_limit(value, full):
+    bar = dashboard.score_bar(value).plain
     assert bar == "█" * full + "░" * (25 - full)
 
 
@@ -162,7 +246,7 @@ def test_a_margin_points_right_inside_and_left_outside(value_m):
 
 
 def test_no_number_draws_no_bar():
-    assert set(dashboard.level_bar(math.nan).plain) == {"·"}
+    assert set(dashboard.score_bar(math.nan).plain) == {"·"}
     assert set(dashboard.margin_bar(math.nan).plain) == {"·"}
 
 
@@ -194,13 +278,13 @@ def test_the_listener_knows_for_how_long_it_heard_nothing():
 
 def test_once_prints_one_line_of_a_log(tmp_path):
     log = lcm.EventLog(str(tmp_path / "log"), "w", overwrite=True)
-    for channel, message in zip(CHANNELS, (plan(), scores(), health()), strict=True):
+    for channel, message in zip(CHANNELS, (plan(), scores(), verdict(), health()), strict=True):
         log.write_event(0, channel, message.encode())
     log.close()
     url = f"file://{tmp_path / 'log'}?speed=0"
     done = subprocess.run([*MONITOR, "--once", "--lcm", url], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.splitlines() == [dashboard.summary(plan(), scores(), health())]
+    assert done.stdout.splitlines() == [dashboard.summary(plan(), scores(), verdict(), health())]
 
 
 def test_once_fails_when_nothing_comes():

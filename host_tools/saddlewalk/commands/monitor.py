@@ -12,6 +12,7 @@ ONCE_S = 2.0
 CHANNELS = {
     "SADDLEWALK_PLAN": "plan_t",
     "SADDLEWALK_SCORES": "scores_t",
+    "SADDLEWALK_VERDICT": "verdict_t",
     "SADDLEWALK_HEALTH": "health_t",
 }
 
@@ -84,9 +85,9 @@ class Listener:
         panel = render(*self._view())
         return Group(panel, self._note()) if self.malformed else panel
 
-    def _view(self) -> tuple[Any, Any, Any, float]:
-        plan, scores, health = (self.latest.get(channel) for channel in CHANNELS)
-        return plan, scores, health, time.monotonic() - self.heard_s
+    def _view(self) -> tuple[Any, Any, Any, Any, float]:
+        plan, scores, verdict, health = (self.latest.get(channel) for channel in CHANNELS)
+        return plan, scores, verdict, health, time.monotonic() - self.heard_s
 
     def _note(self) -> str:
         return f"{self.malformed} LCM messages could not be read"
