@@ -278,6 +278,8 @@ def test_the_host_answers_as_the_core_fed_offline_with_the_same_frames(capsys, t
         assert list(line.values()) == [format_cell(cell) for cell in row]
     levels = [line["level"] for line in written]
     assert levels[12] == "unknown" and written[12]["reason"] == "input"
+    assert written[12]["can_stop"] == written[12]["on_track"] == ""
+    assert {written[-1]["can_stop"], written[-1]["on_track"]} <= {"0", "1"}
     assert {"stable", "caution"} & set(levels)
     for name in ("stable", "caution", "unstable", "unknown"):
         assert float(printed[name]) == pytest.approx(100 * levels.count(name) / 51, abs=0.01)
