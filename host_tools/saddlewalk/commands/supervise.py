@@ -23,7 +23,13 @@ SCORE_COLUMNS = (
 
 
 def add_parser(subparsers: Any) -> None:
-    parser = subparsers.add_parser("supervise", help="score recorded states as CSV")
+    parser = subparsers.add_parser(
+        "supervise",
+        help="score recorded states as CSV",
+        description="Score recorded states as CSV. An empty cell is a result that is not there. "
+        "flags: bits 0-15 saddle_fault_t, 16-23 saddle_limit_t, 24-31 the saddle_reason_t that "
+        "decided the level.",
+    )
     parser.add_argument(
         "--in", dest="source", required=True, metavar="FILE", help="states as CSV; - reads stdin"
     )
