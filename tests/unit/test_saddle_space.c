@@ -1,4 +1,5 @@
-/** Base of support, margins, polygon and gravity: hand-made cases and brute force in double. */
+/** Base of support, margins, exit, polygon, energy surface and gravity: hand-made cases and brute
+ *  force in double. */
 #include "core_test.h"
 
 #include <saddlewalk/saddle_space.h>
@@ -80,7 +81,7 @@ typedef struct {
     double border[2 * ARC_POINTS][2];
 } twin_t;
 
-static void twin_build(twin_t *twin, const saddle_vec2_t cop[2])
+static void twin_build(twin_t *twin, const saddle_vec2_t cop[2], double factor)
 {
     const double dx = (double)cop[0].x - (double)cop[1].x;
     const double dy = (double)cop[0].y - (double)cop[1].y;
@@ -91,8 +92,8 @@ static void twin_build(twin_t *twin, const saddle_vec2_t cop[2])
     twin->y_axis[1] = dy / distance;
     twin->x_axis[0] = twin->y_axis[1];
     twin->x_axis[1] = -twin->y_axis[0];
-    twin->radius = 0.5 * distance;
-    twin->depth = (double)HALF_DEPTH_M;
+    twin->radius = factor * 0.5 * distance;
+    twin->depth = factor * (double)HALF_DEPTH_M;
     const double half = asin(fmin(1.0, twin->depth / twin->radius));
     for (int i = 0; i < ARC_POINTS; i++) {
         const double angle = half * (1.0 - 2.0 * i / (ARC_POINTS - 1));
@@ -147,7 +148,7 @@ static void test_margin_equals_brute_force_for_random_postures(void)
         if (!bos.defined) {
             continue;
         }
-        twin_build(&twin, cop);
+        twin_build(&twin, cop, 1.0);
         const saddle_vec2_t offset = random_point(&state, 1.5f * bos.radius_m + 0.05f);
         const saddle_vec2_t point = {bos.centre_m.x + offset.x, bos.centre_m.y + offset.y};
         const double core = (double)saddle_bos_margin_m(&bos, point);
@@ -196,7 +197,7 @@ static void test_polygon_is_convex_counter_clockwise_and_on_the_border(void)
         const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
         saddle_vec2_t vertices[SADDLE_BOS_VERTICES];
         saddle_bos_polygon(&bos, vertices);
-        twin_build(&twin, cop);
+        twin_build(&twin, cop, 1.0);
         for (int k = 0; k < SADDLE_BOS_VERTICES; k++) {
             const saddle_vec2_t next = vertices[(k + 1) % SADDLE_BOS_VERTICES];
             const saddle_vec2_t after = vertices[(k + 2) % SADDLE_BOS_VERTICES];
@@ -259,6 +260,187 @@ static void test_feet_within_a_millimetre_are_undefined(void)
     TEST_ASSERT_FALSE(saddle_bos(same, HALF_DEPTH_M, 1.0f).defined);
 }
 
+/* ---- share of the base that is used -------------------------------------------------------- */
+
+/* Half the base: the disc and the cut shrink towards the same centre. */
+static void test_factor_shrinks_the_base_around_its_centre(void)
+{
+    const saddle_vec2_t cop[2] = {{1.4f, 0.2f}, {1.0f, -0.1f}};
+    const saddle_bos_t whole = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
+    const saddle_bos_t half = saddle_bos(cop, HALF_DEPTH_M, 0.5f);
+    TEST_ASSERT_TRUE(half.defined);
+    ASSERT_SAME_FLOAT(whole.centre_m.x, half.centre_m.x);
+    ASSERT_SAME_FLOAT(whole.centre_m.y, half.centre_m.y);
+    ASSERT_SAME_FLOAT(whole.axis_x.x, half.axis_x.x);
+    ASSERT_SAME_FLOAT(whole.axis_x.y, half.axis_x.y);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.125, half.radius_m);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.05, half.half_depth_m);
+}
+
+/* Similar figures: the margin of a point twice as far from the centre is twice as large. */
+static void test_margin_in_the_used_share_is_similar(void)
+{
+    uint32_t state = 31;
+    for (int i = 0; i < 2000; i++) {
+        const float factor = random_in(&state, 0.1f, 1.0f);
+        const saddle_vec2_t cop[2] = {random_point(&state, 0.5f), random_point(&state, 0.5f)};
+        const saddle_bos_t whole = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
+        const saddle_bos_t used = saddle_bos(cop, HALF_DEPTH_M, factor);
+        const saddle_vec2_t offset = random_point(&state, 0.5f);
+        const saddle_vec2_t far_m = {whole.centre_m.x + offset.x, whole.centre_m.y + offset.y};
+        const saddle_vec2_t near_m = {whole.centre_m.x + factor * offset.x,
+                                      whole.centre_m.y + factor * offset.y};
+        TEST_ASSERT_DOUBLE_WITHIN(MARGIN_TOLERANCE,
+                                  (double)factor * (double)saddle_bos_margin_m(&whole, far_m),
+                                  saddle_bos_margin_m(&used, near_m));
+    }
+}
+
+/* ---- exit ---------------------------------------------------------------------------------- */
+
+static void assert_exit(const saddle_bos_t *bos, double exit_x, double exit_y, double x, double y,
+                        double vx, double vy)
+{
+    for (int quadrant = 0; quadrant < 4; quadrant++) {
+        const double sx = (quadrant & 1) != 0 ? -1.0 : 1.0;
+        const double sy = (quadrant & 2) != 0 ? -1.0 : 1.0;
+        const saddle_vec2_t exit =
+            saddle_bos_exit_m(bos, (saddle_vec2_t){(float)(sx * x), (float)(sy * y)},
+                              (saddle_vec2_t){(float)(sx * vx), (float)(sy * vy)});
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, sx * exit_x, exit.x);
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, sy * exit_y, exit.y);
+    }
+}
+
+/* r = 0.3, d_h = 0.1: the corner lies at (0.1, sqrt 0.08). The speed does not matter. */
+static void test_exit_of_a_moving_point_by_hand(void)
+{
+    const saddle_bos_t bos = side_by_side(0.3f);
+    const double corner = sqrt(0.08);
+    const double speeds[] = {2e-4, 1.0, 6.0};
+    for (size_t i = 0; i < COUNT_OF(speeds); i++) {
+        const double v = speeds[i];
+        assert_exit(&bos, 0.1, 0.0, 0.0, 0.0, v, 0.0);                     /* edge, ahead */
+        assert_exit(&bos, 0.1, 0.07, -0.05, 0.07, v, 0.0);                 /* from behind */
+        assert_exit(&bos, 0.1, 0.2, 0.0, 0.1, v, v);                       /* edge, aslant */
+        assert_exit(&bos, 0.0, 0.3, 0.0, 0.1, 0.0, v);                     /* arc, sideways */
+        assert_exit(&bos, 0.0, 0.3, 0.0, -0.25, 0.0, v);                   /* all through */
+        assert_exit(&bos, 0.06, sqrt(0.09 - 0.0036), 0.06, 0.1, 0.0, v);   /* arc, beside y_S */
+        assert_exit(&bos, 0.1, corner, 0.05, 0.5 * corner, v / 3.0, corner * v / 0.3);
+        assert_exit(&bos, 0.1, 0.1, 0.1, 0.1, v, 0.0);                     /* on the border */
+    }
+    const saddle_bos_t disc = side_by_side(0.05f);
+    assert_exit(&disc, 0.05, 0.0, 0.01, 0.0, 1.0, 0.0);
+    assert_exit(&disc, 0.03, 0.04, 0.0, 0.0, 0.6, 0.8);
+}
+
+static void test_exit_of_a_point_at_rest_is_the_nearest_border_point(void)
+{
+    const saddle_bos_t bos = side_by_side(0.3f);
+    const double y = sqrt(0.09 - 0.018 * 0.018);
+    const double rest[] = {0.0, 5e-5};
+    for (size_t i = 0; i < COUNT_OF(rest); i++) {
+        assert_exit(&bos, 0.1, 0.02, 0.03, 0.02, rest[i], rest[i]);  /* edge */
+        assert_exit(&bos, 0.0, 0.3, 0.0, 0.25, rest[i], -rest[i]);   /* arc */
+        assert_exit(&bos, 0.018, y, 0.96 * 0.018, 0.96 * y, 0.0, rest[i]); /* arc, aslant */
+    }
+}
+
+/* Whichever way a point outside moves: the nearest point of the border. */
+static void test_exit_of_a_point_outside_is_the_nearest_border_point(void)
+{
+    const saddle_bos_t bos = side_by_side(0.3f);
+    const double corner = sqrt(0.08);
+    const double velocities[][2] = {{0.0, 0.0}, {1.0, 0.0}, {-1.0, -0.3}, {0.0, 2.0}};
+    for (size_t i = 0; i < COUNT_OF(velocities); i++) {
+        const double vx = velocities[i][0];
+        const double vy = velocities[i][1];
+        assert_exit(&bos, 0.1, 0.05, 0.2, 0.05, vx, vy);           /* edge */
+        assert_exit(&bos, 0.0, 0.3, 0.0, 0.4, vx, vy);             /* arc */
+        assert_exit(&bos, 0.1, corner, 0.13, corner + 0.04, vx, vy); /* corner */
+        assert_exit(&bos, 0.1, corner, 0.5, 0.4, vx, vy);
+    }
+    const saddle_bos_t disc = side_by_side(0.05f);
+    assert_exit(&disc, 0.03, 0.04, 0.6, 0.8, 1.0, 1.0);
+}
+
+/* The centre of a plain disc has no nearest border point: any of them. */
+static void test_exit_of_the_middle_of_a_disc_at_rest_is_on_the_border(void)
+{
+    const saddle_bos_t disc = side_by_side(0.05f);
+    const saddle_vec2_t exit =
+        saddle_bos_exit_m(&disc, (saddle_vec2_t){0.0f, 0.0f}, (saddle_vec2_t){0.0f, 0.0f});
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.05, hypot((double)exit.x, (double)exit.y));
+}
+
+static void test_exit_of_an_undefined_base_is_the_point(void)
+{
+    const saddle_vec2_t together[2] = {{0.3f, 0.2f}, {0.3f, 0.2f}};
+    const saddle_bos_t bos = saddle_bos(together, HALF_DEPTH_M, 1.0f);
+    const saddle_vec2_t exit =
+        saddle_bos_exit_m(&bos, (saddle_vec2_t){0.7f, -0.4f}, (saddle_vec2_t){1.0f, 0.0f});
+    ASSERT_SAME_FLOAT(0.7f, exit.x);
+    ASSERT_SAME_FLOAT(-0.4f, exit.y);
+}
+
+/* Inside and moving: on the border, straight ahead, and nothing of the border before it. */
+static void assert_first_crossing(const twin_t *twin, saddle_vec2_t from, saddle_vec2_t direction,
+                                  saddle_vec2_t exit)
+{
+    const double speed = hypot((double)direction.x, (double)direction.y);
+    const double ux = (double)direction.x / speed;
+    const double uy = (double)direction.y / speed;
+    const double dx = (double)exit.x - (double)from.x;
+    const double dy = (double)exit.y - (double)from.y;
+    const double way = dx * ux + dy * uy;
+    TEST_ASSERT_TRUE(way >= -MARGIN_TOLERANCE);
+    TEST_ASSERT_DOUBLE_WITHIN(MARGIN_TOLERANCE, 0.0, dx * uy - dy * ux);
+    TEST_ASSERT_DOUBLE_WITHIN(MARGIN_TOLERANCE, 0.0, twin_margin(twin, exit));
+    for (int k = 1; k < 8; k++) { /* the base is convex: all the way to it lies inside */
+        const saddle_vec2_t between = {(float)((double)from.x + way * ux * k / 8.0),
+                                       (float)((double)from.y + way * uy * k / 8.0)};
+        TEST_ASSERT_TRUE(twin_margin(twin, between) >= -MARGIN_TOLERANCE);
+    }
+}
+
+static void test_exit_of_random_points_is_where_the_ray_or_the_nearest_border_is(void)
+{
+    static twin_t twin;
+    uint32_t state = 29;
+    int inside = 0;
+    int outside = 0;
+    for (int i = 0; i < 1500; i++) {
+        const float reach = (i & 1) != 0 ? 0.6f : 0.12f;
+        const float factor = random_in(&state, 0.3f, 1.0f);
+        const saddle_vec2_t cop[2] = {random_point(&state, reach), random_point(&state, reach)};
+        const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M, factor);
+        if (!bos.defined) {
+            continue;
+        }
+        const saddle_vec2_t offset = random_point(&state, 0.8f * bos.radius_m + 0.02f);
+        const saddle_vec2_t from = {bos.centre_m.x + offset.x, bos.centre_m.y + offset.y};
+        const bool moves = i % 3 != 0;
+        const saddle_vec2_t velocity = random_point(&state, moves ? 3.0f : 0.0f);
+        twin_build(&twin, cop, (double)factor);
+        const saddle_vec2_t exit = saddle_bos_exit_m(&bos, from, velocity);
+        const double margin = twin_margin(&twin, from);
+        if (moves && margin > 0.0) {
+            assert_first_crossing(&twin, from, velocity, exit);
+            inside++;
+        } else {
+            const double way =
+                hypot((double)exit.x - (double)from.x, (double)exit.y - (double)from.y);
+            TEST_ASSERT_DOUBLE_WITHIN(MARGIN_TOLERANCE, 0.0, twin_margin(&twin, exit));
+            TEST_ASSERT_DOUBLE_WITHIN(MARGIN_TOLERANCE, fabs(margin), way);
+            outside++;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_INT(300, inside);
+    TEST_ASSERT_GREATER_THAN_INT(300, outside);
+}
+
+/* ---- energy surface ------------------------------------------------------------------------ */
+
 static double surface_height(const saddle_vec2_t cop[2], double x, double y)
 {
     double highest = 0.0;
@@ -268,6 +450,38 @@ static double surface_height(const saddle_vec2_t cop[2], double x, double y)
         highest = fmax(highest, sqrt(1.02 * 1.02 - dx * dx - dy * dy));
     }
     return highest;
+}
+
+static void test_surface_height_is_over_the_nearer_foot(void)
+{
+    const saddle_vec2_t cop[2] = {{0.3f, 0.05f}, {-0.3f, -0.05f}};
+    float height;
+    TEST_ASSERT_TRUE(saddle_surface_height_m(cop, cop[SADDLE_LEFT], 1.02f, &height));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.02, height); /* the maximum over a foot */
+    TEST_ASSERT_TRUE(saddle_surface_height_m(cop, cop[SADDLE_RIGHT], 1.02f, &height));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.02, height);
+    TEST_ASSERT_TRUE(saddle_surface_height_m(cop, (saddle_vec2_t){0.0f, 0.0f}, 1.02f, &height));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, sqrt(1.02 * 1.02 - 0.0925), height); /* the saddle */
+    uint32_t state = 37;
+    for (int i = 0; i < 5000; i++) {
+        const saddle_vec2_t com = random_point(&state, 0.5f);
+        TEST_ASSERT_TRUE(saddle_surface_height_m(cop, com, 1.02f, &height));
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE,
+                                  surface_height(cop, (double)com.x, (double)com.y), height);
+    }
+}
+
+static void test_surface_ends_where_the_pendulum_lies_down(void)
+{
+    const saddle_vec2_t cop[2] = {{0.0f, 0.05f}, {0.0f, -0.05f}};
+    const float lowest = sqrtf(1.0f - SADDLE_LOWEST_PENDULUM * SADDLE_LOWEST_PENDULUM);
+    float height = 1.0f;
+    TEST_ASSERT_FALSE(
+        saddle_surface_height_m(cop, (saddle_vec2_t){lowest + 1e-4f, 0.05f}, 1.0f, &height));
+    ASSERT_SAME_FLOAT(0.0f, height);
+    TEST_ASSERT_TRUE(
+        saddle_surface_height_m(cop, (saddle_vec2_t){lowest - 1e-4f, 0.05f}, 1.0f, &height));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.1, height);
 }
 
 static void test_gravity_is_the_slope_of_the_energy(void)
@@ -325,6 +539,16 @@ int main(void)
     RUN_TEST(test_polygon_fills_the_base);
     RUN_TEST(test_polygon_has_the_corners);
     RUN_TEST(test_feet_within_a_millimetre_are_undefined);
+    RUN_TEST(test_factor_shrinks_the_base_around_its_centre);
+    RUN_TEST(test_margin_in_the_used_share_is_similar);
+    RUN_TEST(test_exit_of_a_moving_point_by_hand);
+    RUN_TEST(test_exit_of_a_point_at_rest_is_the_nearest_border_point);
+    RUN_TEST(test_exit_of_a_point_outside_is_the_nearest_border_point);
+    RUN_TEST(test_exit_of_the_middle_of_a_disc_at_rest_is_on_the_border);
+    RUN_TEST(test_exit_of_an_undefined_base_is_the_point);
+    RUN_TEST(test_exit_of_random_points_is_where_the_ray_or_the_nearest_border_is);
+    RUN_TEST(test_surface_height_is_over_the_nearer_foot);
+    RUN_TEST(test_surface_ends_where_the_pendulum_lies_down);
     RUN_TEST(test_gravity_is_the_slope_of_the_energy);
     RUN_TEST(test_gravity_ends_where_the_pendulum_lies_down);
     return UNITY_END();
