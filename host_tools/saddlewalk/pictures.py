@@ -1,4 +1,4 @@
-"""The picture of a recorded walk: from above, whole and closely; speed, height and scores."""
+"""The picture of a recorded walk: from above, whole and closely; speed, height, scores, level."""
 
 import csv
 from collections.abc import Sequence
@@ -14,6 +14,7 @@ from matplotlib.patches import Ellipse, Polygon
 from saddlewalk.core import ffi, library
 from saddlewalk.emulator import MODES, STANDING, STARTING, STOPPING, Push
 from saddlewalk.lcm_types import bos_t
+from saddlewalk.verdict import LEVELS
 
 matplotlib.use("Agg")
 
@@ -21,36 +22,51 @@ matplotlib.use("Agg")
 BLUE, SKY, GREEN, ORANGE, RED, PINK = "#0072B2 #56B4E9 #009E73 #E69F00 #D55E00 #CC79A7".split()
 BEFORE_S, AFTER_S = 1.2, 3.0  # the part of the walk shown closely, about the first push
 FOOT_M = (0.26, 0.09)
+MARGIN_SHOWN_M = -0.8  # after a fall it is far below
 FEET = (("left", GREEN), ("right", RED))
+MARGINS = (
+    ("mos_com_m", "CoM"),
+    ("mos_xcom_m", "XCoM"),
+    ("ebos_xcom_m", "XCoM at the next\nheel strike"),
+)
+# From the lowest lane up; alarms have a pattern as well.
+LANES = {
+    "unknown": {"color": "0.6"},
+    "stable": {"color": GREEN},
+    "caution": {"facecolor": ORANGE, "hatch": "///"},
+    "unstable": {"facecolor": RED, "hatch": "xxx"},
+}
 SHADES = {STANDING: "0.85", STARTING: "#DDEEDD", STOPPING: "#F6E3D5"}
 
 Columns = dict[str, np.ndarray]
 
 
 def read_walk(path: Path) -> Columns:
-    """The numbers of walk.csv by column: NaN where a cell is empty, mode and support by number."""
+    """The numbers of walk.csv by column: NaN where a cell is empty, names by their number."""
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
-    codes = {"left": "0", "right": "1"} | {name: str(mode) for mode, name in enumerate(MODES)}
+    codes = {"left": "0", "right": "1"} | {
+        name: str(number) for names in (MODES, LEVELS) for number, name in enumerate(names)
+    }
     return {
         name: np.array([float(codes.get(row[name], row[name]) or "nan") for row in rows])
         for name in rows[0]
-        if name not in ("faults", "limits")
+        if name not in ("reason", "faults", "limits")
     }
 
 
-def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push], cop_range_m: float) -> None:
-    """Draw walk.csv, whole or as far as it goes. cop_range_m: d_h of the walker."""
+def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push], config: Any) -> None:
+    """Draw walk.csv, whole or as far as it goes. config: saddle_config_t of the walker."""
     walk = read_walk(csv_path)
-    figure = Figure(figsize=(13, 13), dpi=110, layout="constrained")
-    whole, above, speed, height, scores, margins = figure.subplots(
-        6, 1, height_ratios=(0.6, 1.7, 0.8, 0.8, 0.9, 0.9)
+    figure = Figure(figsize=(13, 14), dpi=110, layout="constrained")
+    whole, above, speed, height, scores, level, margins = figure.subplots(
+        7, 1, height_ratios=(0.6, 1.7, 0.8, 0.8, 0.9, 0.6, 0.9)
     )
     shown = _shown(walk["time_s"], pushes)
     closely = {name: column[shown] for name, column in walk.items()}
     figure.suptitle("A walk: the plan, and the wearer who follows it")
     _draw_whole(whole, walk, closely)
-    _draw_above(above, closely, pushes, cop_range_m)
+    _draw_above(above, closely, pushes, config)
     _draw_lines(
         speed, walk, (("true_com_vx_m_s", "true"), ("plan_speed_m_s", "planned")), modes=True
     )
@@ -58,10 +74,14 @@ def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push], cop_range_
     _draw_height(height, closely)
     _draw_lines(scores, walk, (("s_pend", "S_pend"), ("s_jump", "S_jump"), ("s_sw", "S_SW")))
     scores.set(ylabel="stability score\n(1 reference, 0 limit)", ylim=(-0.5, 1.6))
-    _draw_lines(margins, walk, (("mos_com_m", "CoM"), ("mos_xcom_m", "XCoM")))
+    _draw_lines(margins, walk, MARGINS)
     margins.set(ylabel="margin in the base\nof support (m)", xlabel="time (s)")
+    margins.set_ylim(bottom=max(margins.get_ylim()[0], MARGIN_SHOWN_M))
     for axes in (speed, height, scores, margins):
         _mark(axes, pushes)
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    _draw_level(level, walk)
+    _mark(level, pushes)
     figure.savefig(png_path)
 
 
@@ -87,9 +107,9 @@ def _shown(time_s: np.ndarray, pushes: Sequence[Push]) -> np.ndarray:
     return shown if shown.any() else np.ones_like(shown)
 
 
-def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], cop_range_m: float) -> None:
+def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], config: Any) -> None:
     for index in range(len(walk["time_s"])):
-        bos_m = _bos(walk, index, cop_range_m)
+        bos_m = _bos(walk, index, config)
         axes.add_patch(Polygon(bos_m, color=SKY, alpha=0.10, lw=0))
         axes.add_patch(Polygon(bos_m, fill=False, ec=SKY, alpha=0.35, lw=0.5))
     for index, (side, colour) in enumerate(FEET):
@@ -107,13 +127,13 @@ def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], cop_range_m: 
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False)
 
 
-def _bos(walk: Columns, index: int, cop_range_m: float) -> np.ndarray:
+def _bos(walk: Columns, index: int, config: Any) -> np.ndarray:
     """Base of support of the true feet, from the C core."""
     cops = ffi().new("saddle_vec2_t[2]")
     for cop, (side, _) in zip(cops, FEET, strict=True):
         cop.x, cop.y = walk[f"true_{side}_x_m"][index], walk[f"true_{side}_y_m"][index]
     bos = ffi().new("saddle_bos_t *")
-    bos[0] = library().saddle_bos(cops, cop_range_m)
+    bos[0] = library().saddle_bos(cops, config.cop_range_m, config.bos_factor)
     vertices = ffi().new("saddle_vec2_t[]", bos_t.VERTICES)
     library().saddle_bos_polygon(bos, vertices)
     return np.array([(vertex.x, vertex.y) for vertex in vertices])
@@ -179,6 +199,17 @@ def _draw_lines(
             axes.fill_between([], [], color=shade, label=MODES[mode])
 
 
+def _draw_level(axes: Axes, walk: Columns) -> None:
+    """A lane for each level, filled while it was announced."""
+    for lane, (name, style) in enumerate(LANES.items()):
+        there = walk["level"] == LEVELS.index(name)
+        spans = [(start_s, end_s - start_s) for start_s, end_s in _spans(walk["time_s"], there)]
+        axes.broken_barh(spans, (lane - 0.4, 0.8), lw=0, **style)
+    axes.set(ylabel="level", ylim=(-0.5, len(LANES) - 0.5))
+    axes.set_yticks(range(len(LANES)), LANES)
+    axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
+
+
 def _spans(time_s: np.ndarray, there: np.ndarray) -> list[tuple[float, float]]:
     """Begin and end of each run of True; a run ends where the next sample is."""
     edges = np.flatnonzero(np.diff(there, prepend=False, append=False))
@@ -190,4 +221,3 @@ def _mark(axes: Axes, pushes: Sequence[Push]) -> None:
     for push in pushes:
         axes.axvline(push.time_s, color=PINK, lw=2.5, zorder=1)
     axes.grid(alpha=0.25)
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)

@@ -13,27 +13,35 @@ from typing import Self
 import can
 import lcm
 
+from saddlewalk import verdict
 from saddlewalk.emulator import MODES, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.exoskeleton import Observer, Tick
 from saddlewalk.lcmbus import listen, receive
 from saddlewalk.table import Cell, format_cell
+from saddlewalk.ticks import Signals, scores_of
 
 LCM_CHANNELS = "SADDLEWALK_.*"
 LCM_QUEUE = 2000
 LAST_WORDS_S = 0.2  # for what is still on its way at the end
-CHANNELS = tuple(f"SADDLEWALK_{part}" for part in ("PLAN", "SCORES", "BOS", "HEALTH", "TRUTH"))
+CHANNELS = tuple(f"SADDLEWALK_{part}" for part in "PLAN SCORES VERDICT BOS HEALTH TRUTH".split())
 
 _POINTS = "com_x_m com_y_m com_z_m left_x_m left_y_m left_z_m right_x_m right_y_m right_z_m".split()
 COLUMNS = (
     "time_s mode step_count phase theta_rad support".split()
     + [f"plan_{name}" for name in _POINTS]
     + "plan_speed_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m v_comp_m_s".split()
-    + "gravity_x_n gravity_y_n faults limits".split()
+    + "gravity_x_n gravity_y_n".split()
+    + verdict.COLUMNS
+    + "paper_stable xcom_deviation_x_m xcom_deviation_y_m".split()
+    + "recovery_foot recovery_x_m recovery_y_m recovery_margin_m recovery_stops".split()
+    + "faults limits".split()
     + [f"true_{name}" for name in _POINTS]
     + "true_com_vx_m_s true_com_vy_m_s true_cop_x_m true_cop_y_m left_contact right_contact".split()
     + "pushed_x_n_s pushed_y_n_s fallen".split()
 )
+
+_SCORES = "S_PEND S_JUMP S_SW MOS_COM MOS_XCOM V_COMP GRAVITY_X GRAVITY_Y".split()
 
 
 class Recorder(Observer):
@@ -44,6 +52,7 @@ class Recorder(Observer):
         self.can_path = folder / "walk.candump.log"
         self.csv_path = folder / "walk.csv"
         self.frames = self.rows = self.lcm_messages = 0
+        self.levels: list[str] = []  # announced, of each tick
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self._csv_file = self.csv_path.open("w", newline="")
@@ -74,6 +83,7 @@ class Recorder(Observer):
     def tick(self, tick: Tick, wearer: Wearer) -> None:
         self._csv.writerow(format_cell(cell) for cell in row(tick, wearer))
         self.rows += 1
+        self.levels.append(verdict.level_name(int(tick.messages["VERDICT"]["LEVEL"])))
 
     def poll(self) -> None:
         for _ in range(LCM_QUEUE):
@@ -87,17 +97,18 @@ class Recorder(Observer):
 
 def row(tick: Tick, wearer: Wearer) -> list[Cell]:
     """One line of walk.csv, world frame, in the order of COLUMNS; no plan: empty cells."""
-    scores, margin = tick.messages["SCORES_STEP"], tick.messages["SCORES_MARGIN"]
-    force, health = tick.messages["SCORES_FORCE"], tick.messages["HEALTH"]
+    scores = scores_of(tick.messages)
     left, right = wearer.feet
     return [
         tick.time_s,
         *_planned(tick, wearer.origin_m),
-        *(scores[name] for name in ("S_PEND", "S_JUMP", "S_SW")),
-        *(margin[name] for name in ("MOS_COM", "MOS_XCOM", "V_COMP")),
-        *(force[name] for name in ("GRAVITY_X", "GRAVITY_Y")),
-        f"0x{int(force['FAULTS']):04x}",
-        f"0x{int(health['LIMITS']):02x}",
+        *(scores[name] for name in _SCORES),
+        *verdict.cells(scores),
+        int(scores["PAPER_STABLE"]),
+        *(scores[name] for name in ("XCOM_DEVIATION_X", "XCOM_DEVIATION_Y")),
+        *_recovery(scores),
+        f"0x{int(scores['FAULTS']):04x}",
+        f"0x{int(tick.messages['HEALTH']['LIMITS']):02x}",
         *(wearer.com_m.real, wearer.com_m.imag, wearer.height_m),
         *(left.position_m.real, left.position_m.imag, left.height_m),
         *(right.position_m.real, right.position_m.imag, right.height_m),
@@ -106,6 +117,16 @@ def row(tick: Tick, wearer: Wearer) -> list[Cell]:
         *(int(left.contact), int(right.contact)),
         *(wearer.pushed_n_s.real, wearer.pushed_n_s.imag),
         int(wearer.fallen),
+    ]
+
+
+def _recovery(scores: Signals) -> list[Cell]:
+    """Which foot, where from the stance foot, the reach that is left, whether it ends the walk."""
+    foot = "right" if scores["FOOT"] else "left"
+    return [
+        foot if scores["COMPARED"] else None,
+        *(scores[name] for name in ("X", "Y", "MARGIN")),
+        verdict.known_bit(scores["STOPS"], scores["X"]),
     ]
 
 

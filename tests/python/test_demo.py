@@ -47,6 +47,7 @@ def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys
     told = capsys.readouterr().out
     assert "did not fall" in told and "BAD" not in told and "push of 8 N s to 90 degrees" in told
     assert "stands at the end" in told
+    assert_levels_told(told, [row["level"] for row in rows(tmp_path)])
     assert {path.name for path in tmp_path.iterdir()} == FILES
 
     walk = rows(tmp_path)
@@ -78,6 +79,16 @@ def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys
     log.close()
     assert set(heard) == set(CHANNELS)
     assert heard.count("SADDLEWALK_TRUTH") == heard.count("SADDLEWALK_PLAN") == ticks
+
+
+def assert_levels_told(told: str, levels: list[str]) -> None:
+    """A walk that is mostly stable, with an alarm for the push, and the time of each level."""
+    line = next(line for line in told.splitlines() if line.startswith("level: "))
+    for name in ("stable", "caution", "unstable", "unknown"):
+        assert f"{name} {levels.count(name) * TICK_S:.1f} s" in line
+    assert levels.count("stable") > 0.5 * len(levels)
+    push = round(12 / TICK_S)
+    assert {"caution", "unstable"} & set(levels[push : push + 12])
 
 
 def test_demo_in_lockstep_gives_the_same_bits_each_time(tmp_path, ports):

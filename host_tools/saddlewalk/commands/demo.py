@@ -78,7 +78,8 @@ def run(args: argparse.Namespace) -> int:
                 exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers)
                 exoskeleton.run(args.clock, args.duration)
     to_stand = schedule(args.duration).speed_m_s == 0
-    return _finish(args.out, wearer, exoskeleton, recorder, to_stand)
+    picture = _draw(args.out, recorder, wearer, config)
+    return _finish(picture, wearer, exoskeleton, recorder, to_stand)
 
 
 def _open_lcm(url: str | None) -> Any:
@@ -140,27 +141,41 @@ def _display(lcm: Any) -> Iterator[Any]:
         yield Display()
 
 
+def _draw(folder: Path, recorder: "Recorder", wearer: "Wearer", config: Any) -> Path:
+    from saddlewalk.pictures import draw_walk
+
+    picture = folder / "walk.png"
+    draw_walk(recorder.csv_path, picture, wearer.pushes, config)
+    return picture
+
+
 def _finish(
-    folder: Path,
+    picture: Path,
     wearer: "Wearer",
     exoskeleton: "Exoskeleton",
     recorder: "Recorder",
     to_stand: bool,
 ) -> int:
-    """Draw the picture, read everything again, tell; 0 only if the walk was sound."""
-    from saddlewalk.pictures import draw_walk
-
-    picture = folder / "walk.png"
-    draw_walk(recorder.csv_path, picture, wearer.pushes, wearer.body.foot_half_length_m)
+    """Read everything again, tell; 0 only if the walk was sound."""
     checks = _checks(wearer, exoskeleton, recorder)
     if to_stand:
         checks.insert(1, _standing(exoskeleton))
     print(summary(wearer, exoskeleton))
+    print(level_times(recorder))
     for good, words in checks:
         print(f"  {'ok ' if good else 'BAD'}  {words}")
     for path in (picture, recorder.csv_path, recorder.can_path, recorder.lcm_path):
         print(f"  {path}  {path.stat().st_size / 1024:.0f} KiB")
     return 0 if all(good for good, _ in checks) else 1
+
+
+def level_times(recorder: "Recorder") -> str:
+    """For how long each level was announced."""
+    from saddlewalk.ticks import TICK_S
+    from saddlewalk.verdict import ticks_in
+
+    told = ticks_in(recorder.levels).items()
+    return "level: " + ", ".join(f"{name} {ticks * TICK_S:.1f} s" for name, ticks in told)
 
 
 def _standing(exoskeleton: "Exoskeleton") -> tuple[bool, str]:
