@@ -49,6 +49,7 @@ static const saddle_config_field_t FIELDS[] = {
     FIELD(recovery_width_min_m, 0.0f, 0.3f),
     FIELD(recovery_width_max_m, 0.1f, 1.5f),
     FIELD(recovery_margin_m, -0.3f, 0.3f),
+    FIELD(recovery_follow, 0.0f, 1.0f),
     FIELD(caution_score, -10.0f, 1.0f),
     FIELD(caution_xcom_ap_m, 0.0f, 10.0f),
     FIELD(caution_xcom_ml_m, 0.0f, 10.0f),
@@ -93,16 +94,17 @@ saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg)
         .bos_factor = 1.0f,
         .ankle_work_factor = 1.0f,
         .stop_margin_m = 0.0f,
-        .foresight_s = 0.5f,
+        .foresight_s = 0.4f,
         .cop_shift_ap_m = 0.10f,
         .cop_shift_ml_m = 0.03f,
         .recovery_width_min_m = 0.02f,
         .recovery_width_max_m = 0.50f,
         .recovery_margin_m = 0.0f,
+        .recovery_follow = 1.0f,
         .caution_score = 0.1f,
         .caution_xcom_ap_m = 0.13f,
         .caution_xcom_ml_m = 0.07f,
-        .level_hold_ticks = 1.0f,
+        .level_hold_ticks = 2.0f,
         .ankle = SADDLE_ANKLE_ERF,
     };
 }
@@ -172,6 +174,9 @@ const char *saddle_config_check(const saddle_config_t *config)
     }
     if ((unsigned)config->ankle >= (unsigned)SADDLE_ANKLE_COUNT) {
         return "ankle";
+    }
+    if (config->recovery_width_min_m > config->recovery_width_max_m) {
+        return "recovery_width_min_m";
     }
     const char *bad_width = check_step_width(config);
     return bad_width != NULL ? bad_width : check_reach(config);

@@ -73,7 +73,20 @@ static bool foot_frozen(saddle_watch_t *watch, const saddle_config_t *config,
     return still->still_s > config->foot_max_age_s && !vec2_within(still->way_m, FROZEN_WAY_M);
 }
 
-/* The CoM's velocity did not change, and a foot on the ground went another way than it says. */
+/* A foot on the ground is where it was, if the CoM went the way that its velocity says. */
+static bool contradicts(saddle_vec2_t *anchor_m, bool anchored, saddle_vec2_t cop_m,
+                        saddle_vec2_t way_m)
+{
+    const saddle_vec2_t place_m = {cop_m.x + way_m.x, cop_m.y + way_m.y};
+    if (!anchored) {
+        *anchor_m = place_m;
+        return false;
+    }
+    const saddle_vec2_t amiss_m = {place_m.x - anchor_m->x, place_m.y - anchor_m->y};
+    return !vec2_within(amiss_m, FROZEN_WAY_M);
+}
+
+/* The CoM kept its bits, and a foot on the ground went another way than they say. */
 static bool com_frozen(saddle_watch_t *watch, const saddle_config_t *config,
                        const saddle_measurement_t *measurement, float dt_s)
 {
@@ -81,22 +94,15 @@ static bool com_frozen(saddle_watch_t *watch, const saddle_config_t *config,
     const bool unchanged = measurement->com.height_m == watch->height_m &&
                            same(measurement->com.velocity_m_s, watch->velocity_m_s);
     follow_still(still, unchanged, measurement->com.velocity_m_s, dt_s);
-    bool contradicted = false;
+    watch->com_contradicted = watch->com_contradicted && unchanged;
     for (int side = 0; side < 2; side++) {
-        const saddle_vec2_t cop_m = measurement->foot[side].cop_m;
-        saddle_vec2_t *start_m = &watch->cop_when_com_stopped_m[side];
-        if (!unchanged) {
-            *start_m = cop_m;
-            watch->stood_since[side] = true;
+        const bool anchored = unchanged && measurement->foot[side].contact;
+        if (contradicts(&watch->anchor_m[side], anchored, measurement->foot[side].cop_m,
+                        still->way_m)) {
+            watch->com_contradicted = true;
         }
-        watch->stood_since[side] =
-            watch->stood_since[side] && measurement->foot[side].contact;
-        const saddle_vec2_t amiss_m = {cop_m.x - start_m->x + still->way_m.x,
-                                       cop_m.y - start_m->y + still->way_m.y};
-        contradicted =
-            contradicted || (watch->stood_since[side] && !vec2_within(amiss_m, FROZEN_WAY_M));
     }
-    return contradicted && still->still_s > config->com_max_age_s;
+    return watch->com_contradicted && still->still_s > config->com_max_age_s;
 }
 
 static uint32_t judge_alive(saddle_watch_t *watch, const saddle_config_t *config,

@@ -47,7 +47,8 @@ static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t
     context->ticked = true;
     if (since_us > limit_us) {
         *limits |= (uint32_t)SADDLE_LIMIT_TICK_GAP;
-        saddle_track_gap(&context->supervisor.steps);
+        const uint32_t gap_us = since_us < UINT32_MAX ? (uint32_t)since_us : UINT32_MAX;
+        saddle_track_gap(&context->supervisor.steps, (float)gap_us * 1.0e-6f);
         return limit_us;
     }
     return (uint32_t)since_us;
@@ -89,6 +90,7 @@ static saddle_intent_t intent_of(const saddle_plan_t *plan)
     saddle_intent_t intent = {
         .leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u,
         .walking = walking,
+        .com_x_m = plan->com_m.x,
         .step = {
             .stance = (saddle_side_t)plan->support,
             .speed_m_s = plan->speed_m_s,

@@ -110,7 +110,9 @@ void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_config_t *c
     }
 }
 
-void saddle_track_gap(saddle_step_tracker_t *tracker)
+void saddle_track_gap(saddle_step_tracker_t *tracker, float gap_s)
 {
     tracker->step_open = false;
+    tracker->stands = false;
+    tracker->since_strike_s += gap_s;
 }

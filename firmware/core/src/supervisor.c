@@ -184,22 +184,21 @@ static void compare_standing(const saddle_config_t *config, const saddle_body_t 
     const saddle_vec2_t deviation_m = verdict->xcom_deviation_m;
     const saddle_side_t foot = deviation_m.y > 0.0f ? SADDLE_LEFT : SADDLE_RIGHT;
     const saddle_vec2_t stance_m = seen.cop_m[saddle_other_side(foot)];
-    const saddle_vec2_t xcom_m =
-        plus(xcom_of(body, planned),
-             least_deviation_m(config, body, deviation_m, zero_m, config->foresight_s));
     const saddle_catch_t to_catch = {
         .stance = saddle_other_side(foot),
         .landing_m = less(seen.cop_m[foot], stance_m),
-        .xcom_m = less(xcom_m, stance_m),
+        .xcom_m = less(xcom_of(body, planned), stance_m),
+        .departure_m = least_deviation_m(config, body, deviation_m, zero_m, config->foresight_s),
         .step_time_s = config->foresight_s,
     };
     verdict->recovery = saddle_recovery_step(config, body, &to_catch);
 }
 
-/* The step that a steady walk makes on a stance foot, after a step as the last one was. */
+/* The step that a steady walk makes on the stance foot, after a step as the last one was. */
 static saddle_step_t usual_step(const saddle_config_t *config, const saddle_step_tracker_t *steps,
-                                saddle_side_t stance, float speed_m_s)
+                                float speed_m_s)
 {
+    const saddle_side_t stance = (saddle_side_t)steps->stance;
     const saddle_side_t foot = saddle_other_side(stance);
     const float half_step_m =
         saddle_position_to_m(saddle_half_step(config, foot, saddle_speed_from_m_s(speed_m_s)));
@@ -217,28 +216,24 @@ static saddle_step_t usual_step(const saddle_config_t *config, const saddle_step
     return step;
 }
 
-/* The planned step while the wearer is on its stance foot, with both feet down as well. */
-static saddle_step_t running_step(const saddle_config_t *config,
-                                  const saddle_step_tracker_t *steps,
-                                  const saddle_measurement_t *measurement,
-                                  const saddle_intent_t *intent, float speed_m_s)
+/* The wearer is on the planned step: on its stance foot, if with the other one too. */
+static bool on_planned_step(const saddle_step_tracker_t *steps,
+                            const saddle_measurement_t *measurement,
+                            const saddle_intent_t *intent)
 {
     const bool both = measurement->foot[SADDLE_LEFT].contact &&
                       measurement->foot[SADDLE_RIGHT].contact;
-    const saddle_side_t stance = (saddle_side_t)steps->stance;
-    return intent->walking && (both || stance == intent->step.stance)
-               ? intent->step
-               : usual_step(config, steps, stance, speed_m_s);
+    return intent->walking && (both || steps->stance == (uint8_t)intent->step.stance);
 }
 
 static void compare_walking(const saddle_config_t *config, const saddle_body_t *body,
                             const saddle_measurement_t *measurement, const saddle_step_t *step,
-                            saddle_verdict_t *verdict)
+                            float phase_m, saddle_verdict_t *verdict)
 {
     const saddle_vec2_t zero_m = {0.0f, 0.0f};
     const saddle_vec2_t com_m = less(zero_m, measurement->foot[step->stance].cop_m);
     const seen_t seen = seen_from(config, measurement, com_m);
-    const saddle_expectation_t expected = saddle_expect(config, step, com_m.x);
+    const saddle_expectation_t expected = saddle_expect(config, step, phase_m);
     compare_state(config, body, &seen, &expected.now, verdict);
 
     const saddle_com_state_t deviation = {
@@ -257,11 +252,27 @@ static void compare_walking(const saddle_config_t *config, const saddle_body_t *
     const saddle_catch_t to_catch = {
         .stance = step->stance,
         .landing_m = expected.landing_m,
-        .xcom_m = plus(planned_xcom_m, least_deviation_m(config, body, verdict->xcom_deviation_m,
-                                                         trailing_m, expected.time_s)),
+        .xcom_m = planned_xcom_m,
+        .departure_m = least_deviation_m(config, body, verdict->xcom_deviation_m, trailing_m,
+                                         expected.time_s),
         .step_time_s = expected.step_time_s,
     };
     verdict->recovery = saddle_recovery_step(config, body, &to_catch);
+}
+
+/* A walk without a plan for its step: at a speed, in the phase in which the CoM is. */
+static bool compare_usual(const saddle_config_t *config, const saddle_body_t *body,
+                          const saddle_step_tracker_t *steps,
+                          const saddle_measurement_t *measurement, float speed_m_s,
+                          saddle_verdict_t *verdict)
+{
+    if (!saddle_in_range(speed_m_s, SPEED_MIN_M_S, SPEED_MAX_M_S)) {
+        return false;
+    }
+    const saddle_step_t step = usual_step(config, steps, speed_m_s);
+    compare_walking(config, body, measurement, &step, -measurement->foot[step.stance].cop_m.x,
+                    verdict);
+    return true;
 }
 
 /* Against what is planned; without a command, against the walk of the last step or standing.
@@ -270,14 +281,14 @@ static bool compare(const saddle_config_t *config, const saddle_body_t *body,
                     const saddle_step_tracker_t *steps, const saddle_measurement_t *measurement,
                     const saddle_intent_t *intent, saddle_verdict_t *verdict)
 {
-    const float own_m_s = steps->v_comp_known ? steps->v_comp_m_s : 0.0f;
-    const float speed_m_s =
-        saddle_clamp(intent->leads ? intent->step.speed_m_s : own_m_s, 0.0f, SPEED_MAX_M_S);
-    const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
-    if (walks && speed_m_s >= SPEED_MIN_M_S) {
-        const saddle_step_t step = running_step(config, steps, measurement, intent, speed_m_s);
-        compare_walking(config, body, measurement, &step, verdict);
+    if (on_planned_step(steps, measurement, intent)) {
+        compare_walking(config, body, measurement, &intent->step, intent->com_x_m, verdict);
         return true;
+    }
+    const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
+    const float speed_m_s = intent->leads ? intent->step.speed_m_s : steps->v_comp_m_s;
+    if (walks) {
+        return compare_usual(config, body, steps, measurement, speed_m_s, verdict);
     }
     if (intent->leads || steps->stands) {
         compare_standing(config, body, measurement, &intent->standing, verdict);
@@ -342,7 +353,8 @@ static saddle_level_t level_of(saddle_reason_t reason)
     switch (reason) {
     case SADDLE_REASON_NONE: return SADDLE_LEVEL_STABLE;
     case SADDLE_REASON_INPUT:
-    case SADDLE_REASON_NO_WALK: return SADDLE_LEVEL_UNKNOWN;
+    case SADDLE_REASON_NO_WALK:
+    case SADDLE_REASON_SETTLING: return SADDLE_LEVEL_UNKNOWN;
     case SADDLE_REASON_NO_STEP: return SADDLE_LEVEL_UNSTABLE;
     default: return SADDLE_LEVEL_CAUTION;
     }
@@ -362,6 +374,8 @@ static void announce(saddle_supervisor_t *supervisor, const saddle_config_t *con
         (float)supervisor->next_level_ticks >= config->level_hold_ticks) {
         supervisor->level = (uint8_t)level;
         supervisor->reason = (uint8_t)reason;
+    } else if (supervisor->level == (uint8_t)SADDLE_LEVEL_UNKNOWN) {
+        supervisor->reason = (uint8_t)SADDLE_REASON_SETTLING;
     }
 }
 

@@ -54,6 +54,8 @@ typedef struct {
     float recovery_width_min_m;       /**< a recovery step is at least so wide, [E30] */
     float recovery_width_max_m;       /**< and at most so wide */
     float recovery_margin_m;          /**< XCoM inside the landing CoP by this, [E30] */
+    float recovery_follow;            /**< share of the XCoM's departure that the landing follows; 0:
+                                           the nearest place to the planned one, [E30] */
     float caution_score;              /**< a score below it is a caution, [E31] */
     float caution_xcom_ap_m;          /**< XCoM off the planned one by more is a caution, [E31] */
     float caution_xcom_ml_m;

@@ -68,8 +68,9 @@ typedef struct {
     saddle_vec2_t velocity_m_s, cop_m[2]; /**< last believed */
     float height_m;
     saddle_still_t com_still, foot_still[2];
-    saddle_vec2_t cop_when_com_stopped_m[2];
-    bool stood_since[2]; /**< the foot was on the ground all the time that the CoM was still */
+    saddle_vec2_t anchor_m[2]; /**< where a foot on the ground should stay: CoP + way_m of the CoM,
+                                    since it landed or the CoM is still */
+    bool com_contradicted;     /**< a foot has left that place */
     float flight_s;      /**< since both feet are in the air */
 } saddle_watch_t;
 

@@ -13,7 +13,7 @@ typedef struct {
     bool found;     /**< false: no place within reach helps, and landing_m is 0 */
     bool stops;     /**< the XCoM will lie in the BoS of that posture: the step ends the walk */
     uint8_t foot;   /**< saddle_side_t: the foot that steps */
-    saddle_vec2_t landing_m; /**< the place nearest to the planned landing */
+    saddle_vec2_t landing_m; /**< the place nearest to the wanted one */
     float margin_m; /**< reach that is left on the scarcer axis; negative: what is lacking */
 } saddle_recovery_t;
 
@@ -21,7 +21,8 @@ typedef struct {
 typedef struct {
     saddle_side_t stance;
     saddle_vec2_t landing_m; /**< planned */
-    saddle_vec2_t xcom_m;    /**< expected when the foot lands */
+    saddle_vec2_t xcom_m;    /**< planned, when the foot lands */
+    saddle_vec2_t departure_m; /**< of the expected XCoM from there */
     float step_time_s;       /**< of the steps after it */
 } saddle_catch_t;
 

@@ -25,7 +25,7 @@ typedef struct {
 void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_config_t *config,
                         const saddle_measurement_t *measurement, uint32_t faults, float dt_s);
 
-/** What happened since the last call is not known: the running step gives no speed. */
-void saddle_track_gap(saddle_step_tracker_t *tracker);
+/** What happened in the last gap_s is not known: the running step gives no speed. */
+void saddle_track_gap(saddle_step_tracker_t *tracker, float gap_s);
 
 #endif

@@ -79,7 +79,8 @@ typedef enum {
     SADDLE_REASON_S_SW = 7,
     SADDLE_REASON_XCOM_AP = 8,   /**< the XCoM is off the planned one */
     SADDLE_REASON_XCOM_ML = 9,
-    SADDLE_REASON_OFF_TRACK = 10 /**< more energy than the ankles can bring back to the plan's */
+    SADDLE_REASON_OFF_TRACK = 10, /**< more energy than the ankles can bring back to the plan's */
+    SADDLE_REASON_SETTLING = 11   /**< unknown: no level has held for level_hold_ticks yet */
 } saddle_reason_t;
 
 /** The measured posture against the walk that is planned. Where compared is false all else but
@@ -101,6 +102,7 @@ typedef struct {
     bool leads;        /**< a walk has been commanded since the start: the wearer follows the plan */
     bool walking;      /**< else both feet stand */
     saddle_step_t step;      /**< the planned one, while walking */
+    float com_x_m;           /**< planned, from the planned stance CoP */
     saddle_com_state_t standing; /**< while both feet stand, from midway between them */
 } saddle_intent_t;
 
