@@ -20,6 +20,7 @@ REASONS = {
     "xcom_ap": "forward motion departs from the expected",
     "xcom_ml": "sideways motion departs from the expected",
     "off_track": "more energy than the ankles can bring back to the plan's",
+    "settling": "no level has held for long enough yet",
 }
 
 COLUMNS = (

@@ -82,13 +82,11 @@ def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys
 
 
 def assert_levels_told(told: str, levels: list[str]) -> None:
-    """A walk that is mostly stable, with an alarm for the push, and the time of each level."""
+    """The time of each level, in a walk that is mostly stable."""
     line = next(line for line in told.splitlines() if line.startswith("level: "))
     for name in ("stable", "caution", "unstable", "unknown"):
         assert f"{name} {levels.count(name) * TICK_S:.1f} s" in line
     assert levels.count("stable") > 0.5 * len(levels)
-    push = round(12 / TICK_S)
-    assert {"caution", "unstable"} & set(levels[push : push + 12])
 
 
 def test_demo_in_lockstep_gives_the_same_bits_each_time(tmp_path, ports):
@@ -106,7 +104,10 @@ def test_a_fall_is_told_and_is_not_sound(tmp_path, ports, capsys):
     told = capsys.readouterr().out
     assert "fell at" in told and "BAD  the wearer fell" in told
     assert {path.name for path in tmp_path.iterdir()} == FILES
-    assert rows(tmp_path)[-1]["fallen"] == "1"
+    walk = rows(tmp_path)
+    assert walk[-1]["fallen"] == "1"
+    alarms = {row["level"] for row in walk if row["fallen"] == "0" and float(row["time_s"]) > 3}
+    assert "unstable" in alarms and {row["reason"] for row in walk} >= {"none", "no_step"}
 
 
 def test_demo_in_real_time(tmp_path, ports):

@@ -46,6 +46,12 @@ def supervise(capsys, *options: str) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
 
 
+def prompt(tmp_path: Path) -> list[str]:
+    """Options with which a level is announced in the tick in which it is seen."""
+    (tmp_path / "prompt.toml").write_text("level_hold_ticks = 1\n")
+    return ["--config", str(tmp_path / "prompt.toml")]
+
+
 def heel_strikes(rows) -> list[int]:
     return [
         k
@@ -59,7 +65,8 @@ def heel_strikes(rows) -> list[int]:
 def test_scores_equal_their_formulas(speed, capsys, tmp_path):
     twin = Twin(speed, math.radians(10))
     states = steady_walk(twin, 6)
-    scores = supervise(capsys, "--in", write(tmp_path / "states.csv", states))
+    path = write(tmp_path / "states.csv", states)
+    scores = supervise(capsys, "--in", path, *prompt(tmp_path))
     strikes = heel_strikes(states)
     d_min, d = speed / (2 * twin.frequency), twin.step / 2
     d_max = 3.0 / (2 * twin.frequency)
@@ -91,7 +98,7 @@ def test_scores_equal_their_formulas(speed, capsys, tmp_path):
 def test_a_walk_as_planned_is_stable_and_where_it_is_expected(speed, capsys, tmp_path):
     twin = Twin(speed, math.radians(10))
     path = write(tmp_path / "states.csv", steady_walk(twin, 6))
-    for row in supervise(capsys, "--in", path, "--speed", str(speed)):
+    for row in supervise(capsys, "--in", path, "--speed", str(speed), *prompt(tmp_path)):
         steps = twin.steps_taken(float(row["t_s"]))
         sides = (1, -1) if steps % 2 == 0 else (-1, 1)
         stance, landing = (
@@ -119,7 +126,8 @@ def test_whom_no_step_can_catch_is_unstable(capsys, tmp_path):
     states = steady_walk(Twin(1.2, 0.0), 5)
     for state in states[-4:]:
         state["com_vy_m_s"] += 2.0
-    scores = supervise(capsys, "--in", write(tmp_path / "states.csv", states), "--speed", "1.2")
+    path = write(tmp_path / "states.csv", states)
+    scores = supervise(capsys, "--in", path, "--speed", "1.2", *prompt(tmp_path))
     assert [row["level"] for row in scores[:-4]] == ["stable"] * (len(states) - 4)
     assert (scores[-1]["level"], scores[-1]["flags"]) == ("unstable", f"0x{NO_STEP:02x}000000")
     assert scores[-1]["can_stop"] == scores[-1]["on_track"] == "0"
@@ -187,7 +195,8 @@ def test_missing_or_absurd_measurement_is_flagged_and_gives_no_number(
 ):
     states = steady_walk(Twin(1.2, 0.0), 5)
     states[-2][column] = value
-    scores = supervise(capsys, "--in", write(tmp_path / "states.csv", states))
+    path = write(tmp_path / "states.csv", states)
+    scores = supervise(capsys, "--in", path, *prompt(tmp_path))
     assert len(scores) == len(states)
     assert int(scores[-2]["flags"], 16) & 0xFFFF == fault
     assert int(scores[-2]["flags"], 16) >> 24 == INPUT and scores[-2]["level"] == "unknown"

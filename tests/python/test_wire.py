@@ -186,7 +186,7 @@ def random_states(rng: random.Random):
     plan.step_count = rng.randrange(2**32)
     scores.valid = rng.randrange(128)
     scores.can_stop, scores.paper_stable = rng.randrange(2), rng.randrange(2)
-    verdict.level, verdict.reason = rng.randrange(4), rng.randrange(11)
+    verdict.level, verdict.reason = rng.randrange(4), rng.randrange(12)
     verdict.compared, verdict.on_track = rng.random() < 0.8, rng.randrange(2)
     recovery = verdict.recovery
     recovery.found, recovery.stops, recovery.foot = (rng.randrange(2) for _ in range(3))
