@@ -125,6 +125,15 @@ static void test_width_that_falls_below_a_centimetre_is_named(void)
     TEST_ASSERT_NULL(saddle_config_check(&config));
 }
 
+static void test_recovery_widths_in_the_wrong_order_are_named(void)
+{
+    config.recovery_width_min_m = 0.21f;
+    config.recovery_width_max_m = 0.2f;
+    TEST_ASSERT_EQUAL_STRING("recovery_width_min_m", saddle_config_check(&config));
+    config.recovery_width_min_m = 0.2f;
+    TEST_ASSERT_NULL(saddle_config_check(&config));
+}
+
 static void test_half_step_out_of_reach_is_named(void)
 {
     config.half_step_intercept_m = 0.47f; /* x 1.05 > 0.4838, the default body's reach */
@@ -181,6 +190,7 @@ int main(void)
     RUN_TEST(test_unknown_ankle_is_named);
     RUN_TEST(test_width_thresholds_in_the_wrong_order_are_named);
     RUN_TEST(test_width_that_falls_below_a_centimetre_is_named);
+    RUN_TEST(test_recovery_widths_in_the_wrong_order_are_named);
     RUN_TEST(test_half_step_out_of_reach_is_named);
     RUN_TEST(test_configuration_without_a_feasible_walk_is_named);
     RUN_TEST(test_reach_that_lays_the_pendulum_flat_is_named);

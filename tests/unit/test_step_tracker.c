@@ -248,7 +248,7 @@ static void test_step_that_begins_without_a_velocity_gives_no_v_comp(void)
 static void test_step_over_a_gap_between_the_ticks_gives_no_v_comp(void)
 {
     strike_with(SADDLE_LEFT);
-    saddle_track_gap(&tracker);
+    saddle_track_gap(&tracker, 0.3f);
     strike_with(SADDLE_RIGHT);
     TEST_ASSERT_FALSE(tracker.v_comp_known);
     strike_with(SADDLE_LEFT);
@@ -285,6 +285,32 @@ static void test_step_is_forgotten_also_while_nothing_is_measured(void)
     }
     TEST_ASSERT_FALSE(tracker.v_comp_known);
     TEST_ASSERT_FALSE(tracker.half_step_known);
+}
+
+/* The time between two ticks counts, however long: 0.5 s are remembered, ten minutes are not. */
+static void test_step_is_forgotten_over_a_long_gap_between_the_ticks(void)
+{
+    const float gaps_s[] = {0.5f, 600.0f};
+    config.step_time_max_s = 1.0f;
+    for (size_t i = 0; i < COUNT_OF(gaps_s); i++) {
+        strike_with(SADDLE_LEFT);
+        strike_with(SADDLE_RIGHT);
+        saddle_track_gap(&tracker, gaps_s[i]);
+        track();
+        TEST_ASSERT_EQUAL(i == 0u, tracker.v_comp_known);
+        TEST_ASSERT_EQUAL(i == 0u, tracker.half_step_known);
+    }
+}
+
+static void test_standing_is_seen_anew_after_a_gap(void)
+{
+    measured.com.velocity_m_s = (saddle_vec2_t){0.0f, 0.0f};
+    track();
+    TEST_ASSERT_TRUE(tracker.stands);
+    saddle_track_gap(&tracker, 0.3f);
+    measured.com.velocity_m_s.x = 1.1f;
+    track();
+    TEST_ASSERT_FALSE(tracker.stands);
 }
 
 /* Each heel strike begins the time anew, also one that tells no speed. */
@@ -394,6 +420,8 @@ int main(void)
     RUN_TEST(test_step_over_a_gap_between_the_ticks_gives_no_v_comp);
     RUN_TEST(test_last_step_is_forgotten_after_step_time_max);
     RUN_TEST(test_step_is_forgotten_also_while_nothing_is_measured);
+    RUN_TEST(test_step_is_forgotten_over_a_long_gap_between_the_ticks);
+    RUN_TEST(test_standing_is_seen_anew_after_a_gap);
     RUN_TEST(test_walk_that_goes_on_is_not_forgotten);
     RUN_TEST(test_stance_is_the_foot_that_landed_last_or_the_only_one_down);
     RUN_TEST(test_standing_is_both_feet_down_and_a_slow_com);
