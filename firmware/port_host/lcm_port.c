@@ -161,7 +161,7 @@ static saddlewalk_verdict_t verdict_message(const saddle_scores_t *scores,
         .recovery_margin_m = NAN,
     };
     if (verdict->compared) {
-        message.excess_track_j = verdict->excess_track_j;
+        message.excess_track_j = result(scores, SADDLE_VALID_STOP, verdict->excess_track_j);
         message.ebos_com_m = verdict->ebos_com_m;
         message.ebos_xcom_m = verdict->ebos_xcom_m;
         set2(message.xcom_deviation_m, verdict->xcom_deviation_m);

@@ -281,7 +281,8 @@ static void encode_foresight(const saddle_scores_t *scores, const saddle_verdict
            .can_stop = scores->can_stop, .on_track = verdict->on_track,
            .paper_stable = scores->paper_stable,
            .excess_stop = RAW(scores_energy_excess_stop, stop, scores->excess_stop_j),
-           .excess_track = RAW(scores_energy_excess_track, compared, verdict->excess_track_j));
+           .excess_track =
+               RAW(scores_energy_excess_track, stop && compared, verdict->excess_track_j));
     ENCODE(&frames[1], scores_expected, SCORES_EXPECTED, .counter = counter,
            .ebos_com = RAW(scores_expected_ebos_com, compared, verdict->ebos_com_m),
            .ebos_xcom = RAW(scores_expected_ebos_xcom, compared, verdict->ebos_xcom_m));

@@ -106,8 +106,8 @@ def _row(t_s: float, output: Any) -> list[Cell]:
         known = scores.valid & bit or output.faults & faults_with_zero
         return value if known else None
 
-    def compared(value: float) -> float | None:
-        return value if verdict.compared else None
+    def compared(value: float, bit: int = 0) -> float | None:
+        return value if verdict.compared and scores.valid & bit == bit else None
 
     infeasible = core.SADDLE_FAULT_SPEED_INFEASIBLE
     return [
@@ -121,9 +121,9 @@ def _row(t_s: float, output: Any) -> list[Cell]:
         compared(verdict.ebos_com_m),
         compared(verdict.ebos_xcom_m),
         scored(scores.excess_stop_j, core.SADDLE_VALID_STOP),
-        compared(verdict.excess_track_j),
+        compared(verdict.excess_track_j, core.SADDLE_VALID_STOP),
         scored(int(scores.can_stop), core.SADDLE_VALID_STOP),
-        compared(int(verdict.on_track)),
+        compared(int(verdict.on_track), core.SADDLE_VALID_STOP),
         level_name(verdict.level),
         flags(output),
     ]

@@ -23,7 +23,7 @@ typedef enum {
     SADDLE_VALID_MOS_COM = 1u << 3,
     SADDLE_VALID_MOS_XCOM = 1u << 4,
     SADDLE_VALID_GRAVITY = 1u << 5,
-    SADDLE_VALID_STOP = 1u << 6, /**< excess_stop_j and can_stop */
+    SADDLE_VALID_STOP = 1u << 6, /**< excess_stop_j and can_stop: a leg reaches the CoM */
     SADDLE_VALID_ALL = (1u << 7) - 1u
 } saddle_valid_t;
 
@@ -90,7 +90,7 @@ typedef struct {
     uint8_t reason; /**< saddle_reason_t of it */
     bool compared;
     bool on_track;          /**< [E27] the ankles can absorb excess_track_j */
-    float excess_track_j;   /**< [E26] */
+    float excess_track_j;   /**< [E26]; it and on_track only with SADDLE_VALID_STOP */
     float ebos_com_m, ebos_xcom_m;  /**< margins expected in the BoS of the next heel strike (E-BoS),
                                          [E29] */
     saddle_vec2_t xcom_deviation_m; /**< from the planned XCoM at the same phase */
