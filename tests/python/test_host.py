@@ -306,9 +306,8 @@ class LcmNode:
     def __init__(self, url: str) -> None:
         self.lcm = open_lcm(url)
         self.latest = {}
-        self.lcm.subscribe("SADDLEWALK_(PLAN|SCORES|VERDICT|BOS|HEALTH)", self._take).set_queue_capacity(
-            1000
-        )
+        channels = "SADDLEWALK_(PLAN|SCORES|VERDICT|BOS|HEALTH)"
+        self.lcm.subscribe(channels, self._take).set_queue_capacity(1000)
 
     def _take(self, channel: str, data: bytes) -> None:
         from saddlewalk import lcm_types
