@@ -83,28 +83,27 @@ static saddle_scores_t score_plan(const saddle_context_t *context, const saddle_
 /* Where the wearer is to be. */
 static saddle_intent_t intent_of(const saddle_plan_t *plan)
 {
-    const saddle_vec3_t *feet = plan->foot_m;
-    const saddle_vec2_t middle_m = {0.5f * (feet[SADDLE_LEFT].x + feet[SADDLE_RIGHT].x),
-                                    0.5f * (feet[SADDLE_LEFT].y + feet[SADDLE_RIGHT].y)};
+    const saddle_vec3_t stance_m = plan->foot_m[plan->support];
+    const saddle_vec3_t other_m = plan->foot_m[saddle_other_side((saddle_side_t)plan->support)];
     const bool walking = plan->speed_m_s > 0.0f;
-    saddle_intent_t intent = {
+    const float share = walking ? 0.0f : 0.5f;
+    const saddle_vec2_t origin_m = {stance_m.x + share * (other_m.x - stance_m.x),
+                                    stance_m.y + share * (other_m.y - stance_m.y)};
+    const saddle_intent_t intent = {
         .leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u,
         .walking = walking,
-        .com_x_m = plan->com_m.x,
         .step = {
             .stance = (saddle_side_t)plan->support,
             .speed_m_s = plan->speed_m_s,
             .half_behind_m = 0.5f * plan->step_length_m,
             .width_behind_m = plan->step_width_m,
-            .landing_m = {plan->landing_m.x, plan->landing_m.y - feet[plan->support].y},
+            .landing_m = {plan->landing_m.x, plan->landing_m.y - stance_m.y},
+        },
+        .com = {
+            .com_m = {plan->com_m.x - origin_m.x, plan->com_m.y - origin_m.y},
+            .velocity_m_s = {plan->com_velocity_m_s.x, plan->com_velocity_m_s.y},
         },
     };
-    if (!walking) {
-        intent.standing.com_m.x = plan->com_m.x - middle_m.x;
-        intent.standing.com_m.y = plan->com_m.y - middle_m.y;
-        intent.standing.velocity_m_s.x = plan->com_velocity_m_s.x;
-        intent.standing.velocity_m_s.y = plan->com_velocity_m_s.y;
-    }
     return intent;
 }
 

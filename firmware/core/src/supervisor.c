@@ -227,35 +227,34 @@ static bool on_planned_step(const saddle_step_tracker_t *steps,
 }
 
 static void compare_walking(const saddle_config_t *config, const saddle_body_t *body,
-                            const saddle_measurement_t *measurement, const saddle_step_t *step,
-                            float phase_m, saddle_verdict_t *verdict)
+                            const saddle_measurement_t *measurement, saddle_side_t stance,
+                            const saddle_expectation_t *expected, saddle_verdict_t *verdict)
 {
     const saddle_vec2_t zero_m = {0.0f, 0.0f};
-    const saddle_vec2_t com_m = less(zero_m, measurement->foot[step->stance].cop_m);
+    const saddle_vec2_t com_m = less(zero_m, measurement->foot[stance].cop_m);
     const seen_t seen = seen_from(config, measurement, com_m);
-    const saddle_expectation_t expected = saddle_expect(config, step, phase_m);
-    compare_state(config, body, &seen, &expected.now, verdict);
+    compare_state(config, body, &seen, &expected->now, verdict);
 
     const saddle_com_state_t deviation = {
-        less(com_m, expected.now.com_m),
-        less(seen.com.velocity_m_s, expected.now.velocity_m_s)};
-    const saddle_com_state_t grown = saddle_grown(body, &deviation, expected.time_s);
-    const saddle_vec2_t landed_m[2] = {zero_m, expected.landing_m};
+        less(com_m, expected->now.com_m),
+        less(seen.com.velocity_m_s, expected->now.velocity_m_s)};
+    const saddle_com_state_t grown = saddle_grown(body, &deviation, expected->time_s);
+    const saddle_vec2_t landed_m[2] = {zero_m, expected->landing_m};
     const saddle_bos_t ebos = saddle_bos(landed_m, config->cop_range_m, config->bos_factor);
-    const saddle_vec2_t planned_xcom_m = xcom_of(body, &expected.landing);
+    const saddle_vec2_t planned_xcom_m = xcom_of(body, &expected->landing);
     verdict->ebos_com_m =
-        saddle_bos_margin_m(&ebos, plus(expected.landing.com_m, grown.com_m));
+        saddle_bos_margin_m(&ebos, plus(expected->landing.com_m, grown.com_m));
     verdict->ebos_xcom_m = saddle_bos_margin_m(&ebos, plus(planned_xcom_m, xcom_of(body, &grown)));
 
-    const saddle_side_t foot = saddle_other_side(step->stance);
+    const saddle_side_t foot = saddle_other_side(stance);
     const saddle_vec2_t trailing_m = measurement->foot[foot].contact ? seen.cop_m[foot] : zero_m;
     const saddle_catch_t to_catch = {
-        .stance = step->stance,
-        .landing_m = expected.landing_m,
+        .stance = stance,
+        .landing_m = expected->landing_m,
         .xcom_m = planned_xcom_m,
         .departure_m = least_deviation_m(config, body, verdict->xcom_deviation_m, trailing_m,
-                                         expected.time_s),
-        .step_time_s = expected.step_time_s,
+                                         expected->time_s),
+        .step_time_s = expected->step_time_s,
     };
     verdict->recovery = saddle_recovery_step(config, body, &to_catch);
 }
@@ -270,8 +269,9 @@ static bool compare_usual(const saddle_config_t *config, const saddle_body_t *bo
         return false;
     }
     const saddle_step_t step = usual_step(config, steps, speed_m_s);
-    compare_walking(config, body, measurement, &step, -measurement->foot[step.stance].cop_m.x,
-                    verdict);
+    const saddle_expectation_t expected =
+        saddle_expect(config, &step, -measurement->foot[step.stance].cop_m.x);
+    compare_walking(config, body, measurement, step.stance, &expected, verdict);
     return true;
 }
 
@@ -282,7 +282,9 @@ static bool compare(const saddle_config_t *config, const saddle_body_t *body,
                     const saddle_intent_t *intent, saddle_verdict_t *verdict)
 {
     if (on_planned_step(steps, measurement, intent)) {
-        compare_walking(config, body, measurement, &intent->step, intent->com_x_m, verdict);
+        const saddle_expectation_t expected =
+            saddle_expect(config, &intent->step, intent->com.com_m.x);
+        compare_walking(config, body, measurement, intent->step.stance, &expected, verdict);
         return true;
     }
     const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
@@ -291,7 +293,7 @@ static bool compare(const saddle_config_t *config, const saddle_body_t *body,
         return compare_usual(config, body, steps, measurement, speed_m_s, verdict);
     }
     if (intent->leads || steps->stands) {
-        compare_standing(config, body, measurement, &intent->standing, verdict);
+        compare_standing(config, body, measurement, &intent->com, verdict);
     }
     return false;
 }

@@ -102,8 +102,8 @@ typedef struct {
     bool leads;        /**< a walk has been commanded since the start: the wearer follows the plan */
     bool walking;      /**< else both feet stand */
     saddle_step_t step;      /**< the planned one, while walking */
-    float com_x_m;           /**< planned, from the planned stance CoP */
-    saddle_com_state_t standing; /**< while both feet stand, from midway between them */
+    saddle_com_state_t com;  /**< planned, from the planned stance CoP; while both feet stand from
+                                  midway between them */
 } saddle_intent_t;
 
 /** Supervisor state, part of the context. */
