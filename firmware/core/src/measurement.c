@@ -96,7 +96,9 @@ static bool com_frozen(saddle_watch_t *watch, const saddle_config_t *config,
     follow_still(still, unchanged, measurement->com.velocity_m_s, dt_s);
     watch->com_contradicted = watch->com_contradicted && unchanged;
     for (int side = 0; side < 2; side++) {
-        const bool anchored = unchanged && measurement->foot[side].contact;
+        const bool contact = measurement->foot[side].contact;
+        const bool anchored = unchanged && contact && watch->stood[side];
+        watch->stood[side] = contact;
         if (contradicts(&watch->anchor_m[side], anchored, measurement->foot[side].cop_m,
                         still->way_m)) {
             watch->com_contradicted = true;

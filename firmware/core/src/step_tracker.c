@@ -73,10 +73,9 @@ static bool stands_still(const saddle_measurement_t *measurement)
 }
 
 /* Who has not stepped for so long does not walk any more. */
-static void forget_step(saddle_step_tracker_t *tracker, const saddle_config_t *config, bool strike,
-                        float dt_s)
+static void age_step(saddle_step_tracker_t *tracker, const saddle_config_t *config, float dt_s)
 {
-    tracker->since_strike_s = strike ? 0.0f : tracker->since_strike_s + dt_s;
+    tracker->since_strike_s += dt_s;
     if (tracker->since_strike_s > config->step_time_max_s) {
         tracker->since_strike_s = config->step_time_max_s;
         tracker->step_open = false;
@@ -88,6 +87,7 @@ static void forget_step(saddle_step_tracker_t *tracker, const saddle_config_t *c
 void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_config_t *config,
                         const saddle_measurement_t *measurement, uint32_t faults, float dt_s)
 {
+    age_step(tracker, config, dt_s);
     const bool com_known = (faults & SADDLE_FAULTS_COM) == 0u;
     const bool left_known = (faults & SADDLE_FAULTS_LEFT) == 0u;
     const bool right_known = (faults & SADDLE_FAULTS_RIGHT) == 0u;
@@ -97,6 +97,7 @@ void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_config_t *c
     follow_speed(tracker, com_known, measurement->com.velocity_m_s.x, dt_s, strike);
     if (strike) {
         tracker->stance = (uint8_t)(left ? SADDLE_LEFT : SADDLE_RIGHT);
+        tracker->since_strike_s = 0.0f;
     }
     if (left_known && right_known) {
         if (strike) {
@@ -104,7 +105,6 @@ void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_config_t *c
         }
         follow_stance(tracker, measurement);
     }
-    forget_step(tracker, config, strike, dt_s);
     if (com_known && left_known && right_known && !tracker->v_comp_known) {
         tracker->stands = tracker->stands || stands_still(measurement);
     }

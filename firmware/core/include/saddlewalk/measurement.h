@@ -70,7 +70,8 @@ typedef struct {
     saddle_still_t com_still, foot_still[2];
     saddle_vec2_t anchor_m[2]; /**< where a foot on the ground should stay: CoP + way_m of the CoM,
                                     since it landed or the CoM is still */
-    bool com_contradicted;     /**< a foot has left that place */
+    bool stood[2];             /**< the foot was on the ground at the last judgement */
+    bool com_contradicted;     /**< a foot has left its place */
     float flight_s;      /**< since both feet are in the air */
 } saddle_watch_t;
 
