@@ -302,6 +302,21 @@ static void test_step_is_forgotten_over_a_long_gap_between_the_ticks(void)
     }
 }
 
+/* The foot was in the air before the gap and is down after it. */
+static void test_heel_strike_after_a_long_gap_does_not_keep_the_speed(void)
+{
+    strike_with(SADDLE_LEFT);
+    strike_with(SADDLE_RIGHT);
+    measured.foot[SADDLE_LEFT].contact = false;
+    track();
+    track();
+    saddle_track_gap(&tracker, 600.0f);
+    measured.foot[SADDLE_LEFT].contact = true;
+    track();
+    TEST_ASSERT_FALSE(tracker.v_comp_known);
+    TEST_ASSERT_TRUE(tracker.half_step_known); /* of this landing */
+}
+
 static void test_standing_is_seen_anew_after_a_gap(void)
 {
     measured.com.velocity_m_s = (saddle_vec2_t){0.0f, 0.0f};
@@ -421,6 +436,7 @@ int main(void)
     RUN_TEST(test_last_step_is_forgotten_after_step_time_max);
     RUN_TEST(test_step_is_forgotten_also_while_nothing_is_measured);
     RUN_TEST(test_step_is_forgotten_over_a_long_gap_between_the_ticks);
+    RUN_TEST(test_heel_strike_after_a_long_gap_does_not_keep_the_speed);
     RUN_TEST(test_standing_is_seen_anew_after_a_gap);
     RUN_TEST(test_walk_that_goes_on_is_not_forgotten);
     RUN_TEST(test_stance_is_the_foot_that_landed_last_or_the_only_one_down);
