@@ -29,7 +29,7 @@ STATUSES = (
     "ERROR_COMMAND",
 )
 MODES = ("standing", "starting", "walking", "stopping")
-LIMITS = ("SPEED", "HEEL_STRIKE", "TOE_OFF", "FEET", "TICK_GAP")
+LIMITS = ("SPEED", "HEEL_STRIKE", "TOE_OFF", "FEET", "TICK_GAP", "SAFE_STOP")
 FAULTS = (
     "COMMAND",
     "COM_STALE",
@@ -45,6 +45,7 @@ FAULTS = (
     "RIGHT_FROZEN",
     "AIRBORNE",
     "FEET_CROSSED",
+    "COMMAND_STALE",
 )
 
 SCORES = (("S_pend", "s_pend"), ("S_jump", "s_jump"), ("S_SW", "s_sw"))

@@ -54,6 +54,24 @@ static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t
     return (uint32_t)since_us;
 }
 
+/* The last usable command holds; its age goes on. */
+static uint32_t take_command(saddle_context_t *context, const saddle_command_t *command,
+                             uint32_t dt_us)
+{
+    const uint32_t rest_us = UINT32_MAX - context->command.age_us;
+    uint32_t faults = 0;
+    context->command.age_us += dt_us < rest_us ? dt_us : rest_us;
+    if (saddle_command_usable(command)) {
+        context->command = *command;
+    } else {
+        faults |= (uint32_t)SADDLE_FAULT_COMMAND;
+    }
+    if ((float)context->command.age_us > context->config.command_max_age_s * 1.0e6f) {
+        faults |= (uint32_t)SADDLE_FAULT_COMMAND_STALE;
+    }
+    return faults;
+}
+
 /* The feet for the planner: what the supervisor would use of them. */
 static saddle_feet_t measured_feet(const saddle_measurement_t *measurement, uint32_t faults)
 {
@@ -117,18 +135,18 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     if (output->status != SADDLE_OK) {
         return output->status;
     }
-    if (saddle_command_usable(&input->command)) {
-        context->command = input->command;
-    } else {
-        output->faults |= (uint32_t)SADDLE_FAULT_COMMAND;
-    }
     const uint32_t dt_us = elapsed_us(context, input->time_us, &output->limits);
     const float dt_s = (float)dt_us * 1.0e-6f;
     const uint32_t faults = saddle_judge(&context->supervisor.watch, &context->config,
                                          &input->measurement, dt_s);
+    output->faults |= take_command(context, &input->command, dt_us);
+    const bool stop = saddle_safe_state_update(&context->safe_state, &context->config,
+                                               faults | output->faults, dt_s);
+    const saddle_command_t stand = {.mode = (uint8_t)SADDLE_COMMAND_STAND};
+    output->limits |= stop ? (uint32_t)SADDLE_LIMIT_SAFE_STOP : 0u;
     const saddle_feet_t feet = measured_feet(&input->measurement, faults);
     output->limits |= saddle_planner_update(&context->planner, &context->config, &context->body,
-                                            &context->command, &feet, dt_us);
+                                            stop ? &stand : &context->command, &feet, dt_us);
     output->limits |= saddle_planner_write(&context->planner, &context->config, &context->body,
                                            &output->plan);
     output->plan_scores = score_plan(context, &output->plan);

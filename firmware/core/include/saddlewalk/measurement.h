@@ -40,7 +40,8 @@ typedef enum {
     SADDLE_FAULT_LEFT_FROZEN = 1u << 10,  /**< the same bits for foot_max_age_s while the CoM moved */
     SADDLE_FAULT_RIGHT_FROZEN = 1u << 11,
     SADDLE_FAULT_AIRBORNE = 1u << 12,     /**< both feet in the air for longer than flight_max_s */
-    SADDLE_FAULT_FEET_CROSSED = 1u << 13  /**< by more than crossing_max_m */
+    SADDLE_FAULT_FEET_CROSSED = 1u << 13, /**< by more than crossing_max_m */
+    SADDLE_FAULT_COMMAND_STALE = 1u << 14 /**< no usable one for command_max_age_s */
 } saddle_fault_t;
 
 /** Faults that leave the CoM, or the feet, without a measurement to use. */

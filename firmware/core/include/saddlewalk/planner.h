@@ -22,6 +22,7 @@ typedef struct {
     uint8_t mode;          /**< saddle_command_mode_t; a stand does not need the numbers below */
     float speed_m_s;       /**< along x */
     float heel_strike_rad; /**< foot to ground when the heel strikes; erf ankles only */
+    uint32_t age_us;       /**< since it was last confirmed */
 } saddle_command_t;
 
 typedef enum {
@@ -37,7 +38,8 @@ typedef enum {
     SADDLE_LIMIT_HEEL_STRIKE = 1u << 1, /**< angle outside [0, heel_strike_max_rad] */
     SADDLE_LIMIT_TOE_OFF = 1u << 2,     /**< ankle angle outside the geometry, [E13] [E25] */
     SADDLE_LIMIT_FEET = 1u << 3,        /**< measured feet that no plan can start or go on from */
-    SADDLE_LIMIT_TICK_GAP = 1u << 4     /**< late tick: the plan advanced by tick_max_s only */
+    SADDLE_LIMIT_TICK_GAP = 1u << 4,    /**< late tick: the plan advanced by tick_max_s only */
+    SADDLE_LIMIT_SAFE_STOP = 1u << 5    /**< inputs were lost: the walk stops, safe_state.h */
 } saddle_limit_t;
 
 /** Feet as they were measured. */

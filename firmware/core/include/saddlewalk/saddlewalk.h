@@ -15,6 +15,7 @@
 #include <saddlewalk/gait_model.h>
 #include <saddlewalk/measurement.h>
 #include <saddlewalk/planner.h>
+#include <saddlewalk/safe_state.h>
 #include <saddlewalk/saddle_space.h>
 #include <saddlewalk/supervisor.h>
 #include <saddlewalk/version.h>
@@ -55,7 +56,8 @@ typedef struct {
     saddle_body_t body;
     saddle_planner_t planner;
     saddle_supervisor_t supervisor;
-    saddle_command_t command; /**< the last usable one */
+    saddle_safe_state_t safe_state;
+    saddle_command_t command; /**< the last usable one, and its age */
     uint64_t last_time_us;
     bool ticked;
 } saddle_context_t;

@@ -1,0 +1,23 @@
+/** What is done when commands or measurements stop: the plan stops the walk. */
+#ifndef SADDLEWALK_SAFE_STATE_H
+#define SADDLEWALK_SAFE_STATE_H
+
+#include <saddlewalk/config.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** State, part of the context. */
+typedef struct {
+    bool armed;    /**< all inputs were usable once: from then on they are needed */
+    bool stopped;  /**< and were lost since, until they have been good for resume_time_s */
+    float lost_s;  /**< since a measurement was last usable */
+    float good_s;  /**< since all inputs are usable again */
+} saddle_safe_state_t;
+
+/** Follow the inputs' saddle_fault_t bits. True while the walk must stop: from the tick in which an
+ *  input is stale or frozen, or measurements have been unusable for com_max_age_s, until all have
+ *  been good for resume_time_s. A plan that never was given measurements does not need them. */
+bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_config_t *config,
+                              uint32_t faults, float dt_s);
+
+#endif
