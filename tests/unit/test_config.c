@@ -33,6 +33,7 @@ static void test_default_is_the_paper_s_and_passes(void)
     ASSERT_SAME_FLOAT(0.1351f, config.half_step_intercept_m);
     ASSERT_SAME_FLOAT(0.02656f, config.vertical_slope_s);
     ASSERT_SAME_FLOAT(0.002575f, config.vertical_intercept_m);
+    ASSERT_SAME_FLOAT(1.0f, config.lateral_factor);
     ASSERT_SAME_FLOAT(3.0f, config.peak_speed_m_s);
     ASSERT_SAME_FLOAT(0.11f, config.ankle_time_constant_s);
     ASSERT_SAME_FLOAT(0.05f, config.swing_clearance_m);

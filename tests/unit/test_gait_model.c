@@ -120,11 +120,29 @@ static void test_lateral_amplitude_is_tangency_below_half_a_metre_per_second(voi
                               quarter_at(0.55f).amplitude_m);
 }
 
-static void test_com_never_reaches_the_foot(void)
+static void test_lateral_factor_scales_the_amplitude_up_to_tangency(void)
 {
-    for (float speed = 0.01f; speed < 5.0f; speed += 0.01f) {
-        const saddle_quarter_t quarter = quarter_at(speed);
-        TEST_ASSERT_TRUE(quarter.amplitude_m < 0.5f * quarter.width_m);
+    const float printed = quarter_at(1.2f).amplitude_m;
+    config.lateral_factor = 1.8f;
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.8 * (double)printed, quarter_at(1.2f).amplitude_m);
+    config.lateral_factor = 0.4f;
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.4 * (double)printed, quarter_at(1.2f).amplitude_m);
+    config.lateral_factor = 2.4f;
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.10 / PI, quarter_at(1.2f).amplitude_m);
+    config.lateral_factor = 5.0f;
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.10 / PI, quarter_at(1.2f).amplitude_m);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.22 / PI, quarter_at(0.0f).amplitude_m);
+}
+
+static void test_com_never_passes_tangency(void)
+{
+    const float factors[] = {0.1f, 1.0f, 5.0f};
+    for (size_t i = 0; i < COUNT_OF(factors); i++) {
+        config.lateral_factor = factors[i];
+        for (float speed = 0.01f; speed < 5.0f; speed += 0.01f) {
+            const saddle_quarter_t quarter = quarter_at(speed);
+            TEST_ASSERT_TRUE(quarter.amplitude_m < 0.3184f * quarter.width_m); /* 1/pi = 0.31831 */
+        }
     }
 }
 
@@ -191,7 +209,8 @@ int main(void)
     RUN_TEST(test_sides_have_their_own_step_length_and_width);
     RUN_TEST(test_lateral_amplitude_gives_the_paper_s_stability);
     RUN_TEST(test_lateral_amplitude_is_tangency_below_half_a_metre_per_second);
-    RUN_TEST(test_com_never_reaches_the_foot);
+    RUN_TEST(test_lateral_factor_scales_the_amplitude_up_to_tangency);
+    RUN_TEST(test_com_never_passes_tangency);
     RUN_TEST(test_step_bounds);
     RUN_TEST(test_feasible_speeds_lie_between_zero_and_the_ceiling);
     RUN_TEST(test_ceiling_parts_feasible_from_infeasible_for_any_person);

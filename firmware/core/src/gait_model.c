@@ -3,9 +3,6 @@
 #include <saddlewalk/saddle_math.h>
 #include <saddlewalk/saddle_types.h>
 
-/* Below this speed A_y is the tangency value d_SW / pi, [E7]. */
-#define TANGENCY_SPEED_M_S 0.5f
-
 /* Narrower steps are taken as this wide: the swing foot's line needs the CoM off the
  * stance foot. */
 #define WIDTH_MIN_M 0.02f
@@ -51,12 +48,15 @@ float saddle_step_width_m(const saddle_config_t *config, float speed_m_s)
 saddle_quarter_t saddle_quarter(const saddle_config_t *config, saddle_side_t stance, float length_m,
                                 float width_m, float speed_m_s)
 {
-    const float amplitude_speed = speed_m_s > TANGENCY_SPEED_M_S ? speed_m_s : TANGENCY_SPEED_M_S;
+    const float factor = config->lateral_factor;
+    const float tangency_speed_m_s = 0.5f * factor;
+    const float amplitude_speed_m_s =
+        speed_m_s > tangency_speed_m_s ? speed_m_s : tangency_speed_m_s;
     saddle_quarter_t quarter;
     quarter.stance = stance;
     quarter.length_m = length_m;
     quarter.width_m = width_m > WIDTH_MIN_M ? width_m : WIDTH_MIN_M;
-    quarter.amplitude_m = quarter.width_m / (2.0f * SADDLE_PI * amplitude_speed);
+    quarter.amplitude_m = factor * quarter.width_m / (2.0f * SADDLE_PI * amplitude_speed_m_s);
     quarter.vertical_m = config->vertical_slope_s * speed_m_s + config->vertical_intercept_m;
     return quarter;
 }

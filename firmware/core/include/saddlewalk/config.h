@@ -28,6 +28,7 @@ typedef struct {
     float half_step_intercept_m;
     float vertical_slope_s;           /**< peak-to-peak vertical CoM excursion, [E5] */
     float vertical_intercept_m;
+    float lateral_factor;             /**< of the lateral CoM amplitude; 1: as printed, [E7] */
     float peak_speed_m_s;             /**< where reach and XCoM limit meet, [E6] */
     float ankle_time_constant_s;      /**< of the erf profile, [E12] */
     float heel_strike_max_rad;        /**< a larger commanded angle is limited */

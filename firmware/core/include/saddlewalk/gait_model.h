@@ -24,7 +24,7 @@ typedef struct {
     saddle_side_t stance;
     float length_m;    /**< along x; half a step in steady walking */
     float width_m;     /**< between the lines of the two feet, > 0 */
-    float amplitude_m; /**< A_y, [E7] */
+    float amplitude_m; /**< A_y, at most width_m / pi, [E7] */
     float vertical_m;  /**< delta Z, peak to peak, [E5] */
 } saddle_quarter_t;
 
