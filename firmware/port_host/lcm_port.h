@@ -29,9 +29,14 @@ int saddle_lcm_fd(const saddle_lcm_port_t *port);
 /** Handle what waits, `limit` messages at most, without blocking. */
 void saddle_lcm_receive(saddle_lcm_port_t *port, int limit);
 
-/** SADDLEWALK_PLAN, _SCORES, _BOS and _HEALTH, all with health's utime_us. */
-void saddle_lcm_publish(saddle_lcm_port_t *port, const saddle_output_t *output,
-                        const saddlewalk_health_t *health);
+/** SADDLEWALK_INPUT, _PLAN, _SCORES, _VERDICT, _BOS and, last, _HEALTH, all with the utime_us of
+ *  the input and health's tick. */
+void saddle_lcm_publish(saddle_lcm_port_t *port, const saddle_input_t *input,
+                        const saddle_output_t *output, const saddlewalk_health_t *health);
+
+/** SADDLEWALK_CONFIG. */
+void saddle_lcm_publish_config(saddle_lcm_port_t *port, const saddle_config_t *config,
+                               uint64_t time_us, bool lockstep);
 
 void saddle_lcm_close(saddle_lcm_port_t *port);
 

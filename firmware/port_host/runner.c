@@ -8,6 +8,9 @@
 #define FRAMES_AT_ONCE 256
 #define COMMANDS_AT_ONCE 16
 
+/** The configuration is published with every so many ticks, about once a second. */
+#define CONFIG_TICKS 12
+
 #define MEASURED_SET                                                        \
     (1u << SADDLE_WIRE_MEASURED_COM | 1u << SADDLE_WIRE_MEASURED_LEFT | \
      1u << SADDLE_WIRE_MEASURED_RIGHT)
@@ -159,7 +162,10 @@ static void tick(saddle_runner_t *runner, uint64_t time_us, uint32_t latency_us)
     (void)saddle_tick(&runner->context, input, &output); /* the status is part of the output */
     send_frames(runner, &output);
     const saddlewalk_health_t health = health_of(runner, &output, latency_us);
-    saddle_lcm_publish(runner->lcm, &output, &health);
+    if (runner->ticks % CONFIG_TICKS == 0) {
+        saddle_lcm_publish_config(runner->lcm, &runner->context.config, time_us, runner->lockstep);
+    }
+    saddle_lcm_publish(runner->lcm, input, &output, &health);
     ++runner->ticks;
     runner->set = 0;
 }

@@ -1,0 +1,44 @@
+/**
+ * The core's structs as the messages of `lcm_types`, encoded. Knows no transport. What the host
+ * publishes and what `saddlewalk rerun` computes again both come from here, and so can be compared
+ * byte by byte.
+ */
+#ifndef SADDLEWALK_HOST_LCM_MESSAGES_H
+#define SADDLEWALK_HOST_LCM_MESSAGES_H
+
+#include <saddlewalk/saddlewalk.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** Room for the longest message, which is config_t. */
+#define SADDLE_LCM_MESSAGE_MAX 4096
+
+/** The messages of a tick's output. */
+typedef enum {
+    SADDLE_LCM_PLAN = 0,
+    SADDLE_LCM_SCORES = 1,
+    SADDLE_LCM_VERDICT = 2,
+    SADDLE_LCM_BOS = 3,
+    SADDLE_LCM_OUTPUTS
+} saddle_lcm_output_t;
+
+/** The channel of a message of the output, such as SADDLEWALK_PLAN. */
+const char *saddle_lcm_channel(saddle_lcm_output_t part);
+
+/** plan_t, scores_t, verdict_t or bos_t. Returns the size in bytes. */
+int saddle_lcm_encode_output(saddle_lcm_output_t part, const saddle_output_t *output,
+                             int64_t utime_us, uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
+
+/** input_t. Returns the size in bytes. */
+int saddle_lcm_encode_input(const saddle_input_t *input, int32_t tick,
+                            uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
+
+/** input_t back, to the bit. False, and nothing written, unless the bytes are one, to the end. */
+bool saddle_lcm_decode_input(const uint8_t *bytes, int size, saddle_input_t *input,
+                             int32_t *tick);
+
+/** config_t. Returns the size in bytes. */
+int saddle_lcm_encode_config(const saddle_config_t *config, uint64_t time_us, bool lockstep,
+                             uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
+
+#endif
