@@ -75,6 +75,12 @@ class Core:
             raise ValueError(f"saddle_tick at {time_us} us: status {status}")
         return output
 
+    def score_plan(self, plan: Any) -> Any:
+        """saddle_score_plan(): the saddle_scores_t of a planned posture."""
+        scores = ffi().new("saddle_scores_t *")
+        library().saddle_score_plan(self._context, ffi().addressof(plan), scores)
+        return scores
+
     @staticmethod
     def _command(target: Any, command: Command) -> None:
         walk = command.speed_m_s is not None

@@ -225,7 +225,7 @@ static void test_judgement_bytes(void)
     assert_judgement(&output, expected);
 }
 
-/** The energy to stop hangs on its own bit; all that the plan is needed for on `compared`. */
+/** The energies hang on a bit of their own; all that the plan is needed for on `compared`. */
 static void test_what_was_not_compared_has_no_numbers(void)
 {
     const uint8_t not_compared[4][7] = {{0x67, 0x38, 0x01, 0x00, 0x80, 0x00, 0x00},
@@ -236,7 +236,7 @@ static void test_what_was_not_compared_has_no_numbers(void)
     output.verdict.compared = false;
     assert_judgement(&output, not_compared);
 
-    const uint8_t no_step_no_stop[4][7] = {{0x67, 0x00, 0x80, 0xFB, 0xFF, 0x00, 0x00},
+    const uint8_t no_step_no_stop[4][7] = {{0x67, 0x00, 0x80, 0x00, 0x80, 0x00, 0x00},
                                            {0x07, 0xC4, 0x09, 0x48, 0xF4, 0x00, 0x00},
                                            {0x17, 0x02, 0x0A, 0xF4, 0x01, 0x38, 0xFF},
                                            {0x47, 0x00, 0x80, 0x00, 0x80, 0x30, 0xF8}};

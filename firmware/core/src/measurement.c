@@ -9,6 +9,9 @@
 /* A number that keeps its bits is frozen once the rest of the body says that it moved by this. */
 #define FROZEN_WAY_M 0.02f
 
+/* A CoM that is slower may leave the feet where they are, to the bit. */
+#define REST_M_S 0.02f
+
 static bool vec2_within(saddle_vec2_t v, float max)
 {
     return saddle_in_range(v.x, -max, max) && saddle_in_range(v.y, -max, max);
@@ -68,8 +71,10 @@ static bool foot_frozen(saddle_watch_t *watch, const saddle_config_t *config,
                         const saddle_measurement_t *measurement, saddle_side_t side, float dt_s)
 {
     saddle_still_t *still = &watch->foot_still[side];
-    follow_still(still, same(measurement->foot[side].cop_m, watch->cop_m[side]),
-                 measurement->com.velocity_m_s, dt_s);
+    const saddle_vec2_t velocity_m_s = measurement->com.velocity_m_s;
+    const bool unchanged = same(measurement->foot[side].cop_m, watch->cop_m[side]) &&
+                           !vec2_within(velocity_m_s, REST_M_S);
+    follow_still(still, unchanged, velocity_m_s, dt_s);
     return still->still_s > config->foot_max_age_s && !vec2_within(still->way_m, FROZEN_WAY_M);
 }
 
@@ -127,6 +132,18 @@ static uint32_t judge_alive(saddle_watch_t *watch, const saddle_config_t *config
     return faults;
 }
 
+/* What was not measured contradicts nothing. */
+static void forget_still(saddle_watch_t *watch)
+{
+    const saddle_still_t none = {.still_s = 0.0f};
+    watch->com_still = none;
+    watch->com_contradicted = false;
+    for (int side = 0; side < 2; side++) {
+        watch->foot_still[side] = none;
+        watch->stood[side] = false;
+    }
+}
+
 static uint32_t judge_feet(saddle_watch_t *watch, const saddle_config_t *config,
                            const saddle_measurement_t *measurement, float dt_s)
 {
@@ -156,6 +173,8 @@ uint32_t saddle_judge(saddle_watch_t *watch, const saddle_config_t *config,
     }
     if ((faults & (SADDLE_FAULTS_COM | SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT)) == 0u) {
         faults |= judge_alive(watch, config, measurement, dt_s);
+    } else {
+        forget_still(watch);
     }
     return faults;
 }

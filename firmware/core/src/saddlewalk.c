@@ -54,19 +54,20 @@ static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t
     return (uint32_t)since_us;
 }
 
-/* The last usable command holds; its age goes on. */
-static uint32_t take_command(saddle_context_t *context, const saddle_command_t *command,
+/* The last usable command holds, and ages. */
+static uint32_t take_command(saddle_context_t *context, const saddle_input_t *input,
                              uint32_t dt_us)
 {
-    const uint32_t rest_us = UINT32_MAX - context->command.age_us;
+    const uint32_t rest_us = UINT32_MAX - context->command_age_us;
     uint32_t faults = 0;
-    context->command.age_us += dt_us < rest_us ? dt_us : rest_us;
-    if (saddle_command_usable(command)) {
-        context->command = *command;
+    context->command_age_us += dt_us < rest_us ? dt_us : rest_us;
+    if (saddle_command_usable(&input->command)) {
+        context->command = input->command;
+        context->command_age_us = input->command_age_us;
     } else {
         faults |= (uint32_t)SADDLE_FAULT_COMMAND;
     }
-    if ((float)context->command.age_us > context->config.command_max_age_s * 1.0e6f) {
+    if ((float)context->command_age_us > context->config.command_max_age_s * 1.0e6f) {
         faults |= (uint32_t)SADDLE_FAULT_COMMAND_STALE;
     }
     return faults;
@@ -82,20 +83,6 @@ static saddle_feet_t measured_feet(const saddle_measurement_t *measurement, uint
                     measurement->foot[SADDLE_RIGHT].contact},
     };
     return feet;
-}
-
-static saddle_scores_t score_plan(const saddle_context_t *context, const saddle_plan_t *plan)
-{
-    const saddle_posture_t posture = {
-        .com_m = {plan->com_m.x, plan->com_m.y},
-        .com_velocity_m_s = {plan->com_velocity_m_s.x, plan->com_velocity_m_s.y},
-        .cop_m = {{plan->foot_m[SADDLE_LEFT].x, plan->foot_m[SADDLE_LEFT].y},
-                  {plan->foot_m[SADDLE_RIGHT].x, plan->foot_m[SADDLE_RIGHT].y}},
-        .v_comp_m_s = plan->speed_m_s,
-        .half_step_m = 0.5f * plan->step_length_m,
-        .known = plan->valid ? (uint32_t)SADDLE_KNOWN_ALL : 0u,
-    };
-    return saddle_score_posture(&context->config, &context->body, &posture);
 }
 
 /* Where the wearer is to be. */
@@ -139,7 +126,7 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     const float dt_s = (float)dt_us * 1.0e-6f;
     const uint32_t faults = saddle_judge(&context->supervisor.watch, &context->config,
                                          &input->measurement, dt_s);
-    output->faults |= take_command(context, &input->command, dt_us);
+    output->faults |= take_command(context, input, dt_us);
     const bool stop = saddle_safe_state_update(&context->safe_state, &context->config,
                                                faults | output->faults, dt_s);
     const saddle_command_t stand = {.mode = (uint8_t)SADDLE_COMMAND_STAND};
@@ -149,7 +136,6 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
                                             stop ? &stand : &context->command, &feet, dt_us);
     output->limits |= saddle_planner_write(&context->planner, &context->config, &context->body,
                                            &output->plan);
-    output->plan_scores = score_plan(context, &output->plan);
     const saddle_intent_t intent = intent_of(&output->plan);
     output->faults |= saddle_supervisor_update(
         &context->supervisor, &context->config, &context->body, &input->measurement, faults, dt_s,
@@ -205,5 +191,31 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
     saddle_planner_t planner = context->planner;
     advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
     saddle_planner_write(&planner, &context->config, &context->body, plan);
+    return SADDLE_OK;
+}
+
+saddle_status_t saddle_score_plan(const saddle_context_t *context, const saddle_plan_t *plan,
+                                  saddle_scores_t *scores)
+{
+    if (scores == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    *scores = (saddle_scores_t){.valid = 0};
+    if (context == NULL || plan == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    if (context->initialised != INITIALISED) {
+        return SADDLE_ERROR_UNINITIALISED;
+    }
+    const saddle_posture_t posture = {
+        .com_m = {plan->com_m.x, plan->com_m.y},
+        .com_velocity_m_s = {plan->com_velocity_m_s.x, plan->com_velocity_m_s.y},
+        .cop_m = {{plan->foot_m[SADDLE_LEFT].x, plan->foot_m[SADDLE_LEFT].y},
+                  {plan->foot_m[SADDLE_RIGHT].x, plan->foot_m[SADDLE_RIGHT].y}},
+        .v_comp_m_s = plan->speed_m_s,
+        .half_step_m = 0.5f * plan->step_length_m,
+        .known = plan->valid ? (uint32_t)SADDLE_KNOWN_ALL : 0u,
+    };
+    *scores = saddle_score_posture(&context->config, &context->body, &posture);
     return SADDLE_OK;
 }

@@ -77,7 +77,8 @@ def _refuse_mixture(args: argparse.Namespace) -> None:
 def _plan_steady(args: argparse.Namespace) -> int:
     from saddlewalk.core import Core, library
 
-    outputs = walk(Core(load_config(args, args.ankle)), args.speed, args.hs_angle, args.dt)
+    core = Core(load_config(args, args.ankle))
+    outputs = walk(core, args.speed, args.hs_angle, args.dt)
     first = next(outputs)
     limits = first[1].limits
     if limits & library().SADDLE_LIMIT_SPEED:
@@ -90,7 +91,10 @@ def _plan_steady(args: argparse.Namespace) -> int:
     duration_s = (args.strides or 1) * 2.0 * plan.step_length_m / plan.speed_m_s
     further = math.floor(duration_s / args.dt + 1e-9)
     rows = itertools.chain([first], itertools.islice(outputs, further))
-    write_table(args.out, COLUMNS, (_row(t_s, output) for t_s, output in rows))
+    plans = ((t_s, output.plan) for t_s, output in rows)
+    write_table(
+        args.out, COLUMNS, (_row(t_s, plan, core.score_plan(plan)) for t_s, plan in plans)
+    )
     return 0
 
 
@@ -101,7 +105,7 @@ def _plan_schedule(args: argparse.Namespace) -> int:
     wishes = schedule.read_schedule(args.schedule)
     core = Core(load_config(args, args.ankle))
     walked = list(_until_the_end(args, wishes, core))
-    write_table(args.out, SCHEDULE_COLUMNS, (_schedule_row(instant) for instant in walked))
+    write_table(args.out, SCHEDULE_COLUMNS, (_schedule_row(core, instant) for instant in walked))
     infeasible = library().SADDLE_LIMIT_SPEED
     limited = {instant.wish for instant in walked if instant.output.limits & infeasible}
     for wish in sorted(limited, key=lambda wish: wish.line):
@@ -168,13 +172,14 @@ def _note(text: str) -> None:
     print(f"saddlewalk plan: {text}", file=sys.stderr)
 
 
-def _schedule_row(instant: Any) -> list[Cell]:
+def _schedule_row(core: Any, instant: Any) -> list[Cell]:
     from saddlewalk.core import TIME_MAX_S, library
     from saddlewalk.schedule import mode_of
 
-    plan, valid = instant.output.plan, instant.output.plan_scores.valid
-    row = _row(instant.t_s, instant.output)
-    if not valid & library().SADDLE_VALID_STEP:  # before the first step and after the last
+    plan = instant.output.plan
+    scores = core.score_plan(plan)
+    row = _row(instant.t_s, plan, scores)
+    if not scores.valid & library().SADDLE_VALID_STEP:  # before the first step and after the last
         for name in ("s_pend", "s_jump"):
             row[COLUMNS.index(name)] = None
     times_s = (plan.time_to_heel_strike_s, plan.time_to_toe_off_s)
@@ -187,8 +192,7 @@ def _schedule_row(instant: Any) -> list[Cell]:
     ]
 
 
-def _row(t_s: float, output: Any) -> list[Cell]:
-    plan, scores = output.plan, output.plan_scores
+def _row(t_s: float, plan: Any, scores: Any) -> list[Cell]:
     origin_m = plan.origin_x_nm * 1e-9
     com, velocity = plan.com_m, plan.com_velocity_m_s
     left, right = plan.foot_m

@@ -22,7 +22,6 @@ typedef struct {
     uint8_t mode;          /**< saddle_command_mode_t; a stand does not need the numbers below */
     float speed_m_s;       /**< along x */
     float heel_strike_rad; /**< foot to ground when the heel strikes; erf ankles only */
-    uint32_t age_us;       /**< since it was last confirmed */
 } saddle_command_t;
 
 typedef enum {

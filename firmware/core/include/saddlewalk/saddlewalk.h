@@ -35,6 +35,7 @@ typedef enum {
 typedef struct {
     uint64_t time_us; /**< the caller's monotonic clock, any origin */
     saddle_command_t command;
+    uint32_t command_age_us; /**< since the command was last confirmed */
     saddle_measurement_t measurement;
 } saddle_input_t;
 
@@ -44,9 +45,8 @@ typedef struct {
     uint32_t limits; /**< saddle_limit_t bits */
     uint32_t faults; /**< saddle_fault_t bits */
     saddle_plan_t plan;
-    saddle_scores_t plan_scores; /**< of the planned posture, in the frame of the plan */
-    saddle_scores_t scores;      /**< of the measured posture, in the frame of the CoM */
-    saddle_verdict_t verdict;    /**< the measured posture against the plan */
+    saddle_scores_t scores;   /**< of the measured posture, in the frame of the CoM */
+    saddle_verdict_t verdict; /**< the measured posture against the plan */
 } saddle_output_t;
 
 /** Caller-owned state; treat the fields as private. */
@@ -57,7 +57,8 @@ typedef struct {
     saddle_planner_t planner;
     saddle_supervisor_t supervisor;
     saddle_safe_state_t safe_state;
-    saddle_command_t command; /**< the last usable one, and its age */
+    saddle_command_t command; /**< the last usable one */
+    uint32_t command_age_us;
     uint64_t last_time_us;
     bool ticked;
 } saddle_context_t;
@@ -82,5 +83,10 @@ saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *c
  *  touch the context. SADDLE_ERROR_TIME, and a plan that is not valid, outside that span. */
 saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
                                saddle_plan_t *plan);
+
+/** The scores of a planned posture, in the frame of the plan: what the paper tabulates, and what a
+ *  measured score is read against. Of a plan that is not valid nothing is scored. */
+saddle_status_t saddle_score_plan(const saddle_context_t *context, const saddle_plan_t *plan,
+                                  saddle_scores_t *scores);
 
 #endif
