@@ -110,12 +110,17 @@ def placements(recording: Recording) -> list[Placement]:
     return sorted(found, key=lambda placement: placement.first + placement.end)
 
 
-def steps(placed: list[Placement]) -> tuple[np.ndarray, np.ndarray]:
-    """Length and width of each step: of successive placements of opposite feet.
+def step_pairs(placed: list[Placement]) -> list[tuple[Placement, Placement]]:
+    """Each step as the successive placements of opposite feet: from the one, to the other.
 
     A foot that lies there when the trial begins was not seen to step.
     """
-    pairs = [(a, b) for a, b in itertools.pairwise(placed) if a.side != b.side and b.first > 0]
+    return [(a, b) for a, b in itertools.pairwise(placed) if a.side != b.side and b.first > 0]
+
+
+def steps(placed: list[Placement]) -> tuple[np.ndarray, np.ndarray]:
+    """Length and width of each step of step_pairs()."""
+    pairs = step_pairs(placed)
     lengths_m = [b.cop_m[0] - a.cop_m[0] for a, b in pairs]
     widths_m = [(a.cop_m[1] - b.cop_m[1]) * (1 if a.side == 0 else -1) for a, b in pairs]
     return np.array(lengths_m), np.array(widths_m)
