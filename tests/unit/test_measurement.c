@@ -262,16 +262,60 @@ static void test_feet_in_the_air_do_not_make_the_com_frozen(void)
     }
 }
 
-/* It is the way since the bits stay that counts, on feet that stood all that time. */
-static void test_foot_that_landed_since_says_nothing(void)
+/* A walk over the ground: steps of six ticks. The swing foot moves until it lands, during the first
+ * tick of the next step, where both feet are down. The true speed is vx_m_s along x, none across. */
+typedef struct {
+    float com_x_m, foot_x_m[2];
+    int tick, stance;
+} walker_t;
+
+static void walk_on(walker_t *walker, float vx_m_s)
 {
-    measured.foot[SADDLE_RIGHT].contact = false;
-    judge();
-    for (int tick = 0; tick < 12; tick++) {
-        measured.foot[SADDLE_LEFT].cop_m.x -= 1.1f * DT_S;
-        measured.foot[SADDLE_LEFT].cop_m.y -= 0.05f * DT_S;
-        measured.foot[SADDLE_RIGHT].cop_m.x += tick < 6 ? 1.5f * DT_S : -1.1f * DT_S;
-        measured.foot[SADDLE_RIGHT].contact = tick >= 6;
+    const bool both = walker->tick % 6 == 0;
+    walker->com_x_m += vx_m_s * DT_S;
+    walker->foot_x_m[1 - walker->stance] += 2.0f * vx_m_s * DT_S;
+    walker->stance = both ? 1 - walker->stance : walker->stance;
+    walker->tick++;
+    for (int side = 0; side < 2; side++) {
+        measured.foot[side].cop_m.x = walker->foot_x_m[side] - walker->com_x_m;
+        measured.foot[side].contact = both || side == walker->stance;
+    }
+}
+
+/* The same bits for ten seconds, and they are true. */
+static void test_walk_at_a_constant_speed_is_not_frozen(void)
+{
+    walker_t walker = {.foot_x_m = {0.1f, -0.1f}};
+    measured.com.velocity_m_s = (saddle_vec2_t){0.8f, 0.0f};
+    for (int tick = 0; tick < 125; tick++) {
+        walk_on(&walker, 0.8f);
+        TEST_ASSERT_EQUAL_HEX32(0, judge());
+    }
+}
+
+/* Whenever in the step the velocity freezes 0.4 m/s off the truth: the next stance at the latest
+ * contradicts it, and then it stays frozen whichever feet swing, until it changes. */
+static void test_com_that_freezes_in_a_walk_stays_frozen_until_it_changes(void)
+{
+    for (int start = 24; start < 30; start++) {
+        walker_t walker = {.foot_x_m = {0.1f, -0.1f}};
+        memset(&watch, 0, sizeof watch);
+        measured.com.velocity_m_s = (saddle_vec2_t){0.8f, 0.0f};
+        int first = 0;
+        for (int tick = 0; tick < start + 60; tick++) {
+            walk_on(&walker, 0.8f);
+            measured.com.velocity_m_s.x =
+                tick < start ? 0.8f + 1e-3f * (float)(tick % 3) : 1.2f;
+            const uint32_t faults = judge();
+            if (faults != 0u && first == 0) {
+                first = tick;
+            }
+            const uint32_t expected = first != 0 ? (uint32_t)SADDLE_FAULT_COM_FROZEN : 0u;
+            TEST_ASSERT_EQUAL_HEX32(expected, faults);
+        }
+        TEST_ASSERT_TRUE(first > start + 3 && first <= start + 9);
+        walk_on(&walker, 0.8f);
+        measured.com.velocity_m_s.x = 0.8f;
         TEST_ASSERT_EQUAL_HEX32(0, judge());
     }
 }
@@ -315,16 +359,34 @@ static void test_foot_is_alive_if_one_number_changes_or_the_com_hardly_moves(voi
     }
 }
 
-/* Nothing is held against a number that was not there: time that was not measured does not count. */
+/* What was not measured is no contradiction: the true walk goes on while a foot is not measured. */
 static void test_outage_does_not_make_anything_frozen(void)
 {
-    judge();
-    for (int tick = 0; tick < 10; tick++) {
-        measured.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
-        TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_LEFT_STALE, judge());
+    for (int length = 1; length <= 12; length++) {
+        walker_t walker = {.foot_x_m = {0.1f, -0.1f}};
+        setUp();
+        measured.com.velocity_m_s = (saddle_vec2_t){0.8f, 0.0f};
+        for (int tick = 0; tick < 40; tick++) {
+            const bool out = tick >= 10 && tick < 10 + length;
+            walk_on(&walker, 0.8f);
+            measured.foot[SADDLE_LEFT].age_us = out ? SADDLE_AGE_NEVER_US : 0u;
+            TEST_ASSERT_EQUAL_HEX32(out ? (uint32_t)SADDLE_FAULT_LEFT_STALE : 0u, judge());
+        }
     }
-    measured.foot[SADDLE_LEFT].age_us = 0;
-    TEST_ASSERT_EQUAL_HEX32(0, judge());
+}
+
+/* Pushed between two ticks: the place follows from the next tick on. */
+static void test_push_of_a_standing_person_is_not_frozen(void)
+{
+    measured.com.velocity_m_s = (saddle_vec2_t){0.0f, 0.0f};
+    for (int tick = 0; tick < 10; tick++) {
+        judge();
+    }
+    measured.com.velocity_m_s.x = 1.0f;
+    for (int tick = 0; tick < 10; tick++) {
+        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        move(1.0f, 0.0f);
+    }
 }
 
 /* ---- contradictory ------------------------------------------------------------------------- */
@@ -340,8 +402,10 @@ static void test_both_feet_in_the_air_for_long_is_airborne(void)
     }
     TEST_ASSERT_TRUE(((uint32_t)SADDLE_FAULT_AIRBORNE & SADDLE_FAULTS_FEET) != 0u);
     measured.foot[SADDLE_RIGHT].contact = true;
+    move(1.1f, 0.05f);
     TEST_ASSERT_EQUAL_HEX32(0, judge()); /* one foot is enough, at once */
     measured.foot[SADDLE_RIGHT].contact = false;
+    move(1.1f, 0.05f);
     TEST_ASSERT_EQUAL_HEX32(0, judge()); /* and the time begins anew */
 }
 
@@ -391,10 +455,12 @@ int main(void)
     RUN_TEST(test_constant_speed_that_the_feet_agree_with_is_not_frozen);
     RUN_TEST(test_standing_still_without_noise_is_not_frozen);
     RUN_TEST(test_feet_in_the_air_do_not_make_the_com_frozen);
-    RUN_TEST(test_foot_that_landed_since_says_nothing);
+    RUN_TEST(test_walk_at_a_constant_speed_is_not_frozen);
+    RUN_TEST(test_com_that_freezes_in_a_walk_stays_frozen_until_it_changes);
     RUN_TEST(test_foot_that_keeps_its_bits_while_the_com_moves_is_frozen);
     RUN_TEST(test_foot_is_alive_if_one_number_changes_or_the_com_hardly_moves);
     RUN_TEST(test_outage_does_not_make_anything_frozen);
+    RUN_TEST(test_push_of_a_standing_person_is_not_frozen);
     RUN_TEST(test_both_feet_in_the_air_for_long_is_airborne);
     RUN_TEST(test_feet_that_cross_by_too_much_are_contradictory);
     RUN_TEST(test_feet_that_are_not_measured_are_neither_airborne_nor_crossed);
