@@ -1,6 +1,7 @@
 """The C core in this process: the library that firmware links, called through its own headers."""
 
 import functools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +12,7 @@ from saddlewalk.paths import built
 
 AGE_NEVER_US = 0xFFFFFFFF
 TIME_MAX_S = 1000.0  # SADDLE_TIME_MAX_S: an event of a plan that is not foreseen
+BOS_VERTICES = 16  # SADDLE_BOS_VERTICES
 
 
 @functools.cache
@@ -105,6 +107,17 @@ def _fill(target: Any, measurement: Measurement) -> None:
         foot.contact = contact
         if cop_m is not None:
             foot.cop_m.x, foot.cop_m.y = cop_m
+
+
+def bos_polygon(config: Any, cops_m: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
+    """The base of support of a left and a right CoP, as a polygon in their frame."""
+    cops = ffi().new("saddle_vec2_t[2]", [(float(x), float(y)) for x, y in cops_m])
+    bos = ffi().new(
+        "saddle_bos_t *", library().saddle_bos(cops, config.cop_range_m, config.bos_factor)
+    )
+    vertices = ffi().new("saddle_vec2_t[]", BOS_VERTICES)
+    library().saddle_bos_polygon(bos, vertices)
+    return [(vertex.x, vertex.y) for vertex in vertices]
 
 
 def field_ranges() -> dict[str, tuple[float, float]]:

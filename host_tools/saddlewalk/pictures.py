@@ -11,9 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Polygon
 
-from saddlewalk.core import ffi, library
+from saddlewalk.core import bos_polygon
 from saddlewalk.emulator import MODES, STANDING, STARTING, STOPPING, Push
-from saddlewalk.lcm_types import bos_t
 from saddlewalk.verdict import LEVELS
 
 matplotlib.use("Agg")
@@ -129,14 +128,10 @@ def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], config: Any) 
 
 def _bos(walk: Columns, index: int, config: Any) -> np.ndarray:
     """Base of support of the true feet, from the C core."""
-    cops = ffi().new("saddle_vec2_t[2]")
-    for cop, (side, _) in zip(cops, FEET, strict=True):
-        cop.x, cop.y = walk[f"true_{side}_x_m"][index], walk[f"true_{side}_y_m"][index]
-    bos = ffi().new("saddle_bos_t *")
-    bos[0] = library().saddle_bos(cops, config.cop_range_m, config.bos_factor)
-    vertices = ffi().new("saddle_vec2_t[]", bos_t.VERTICES)
-    library().saddle_bos_polygon(bos, vertices)
-    return np.array([(vertex.x, vertex.y) for vertex in vertices])
+    cops_m = [
+        (walk[f"true_{side}_x_m"][index], walk[f"true_{side}_y_m"][index]) for side, _ in FEET
+    ]
+    return np.array(bos_polygon(config, cops_m))
 
 
 def _draw_feet(axes: Axes, walk: Columns, planned: np.ndarray, side: str, colour: str) -> None:

@@ -93,7 +93,7 @@ def _plan_steady(args: argparse.Namespace) -> int:
     rows = itertools.chain([first], itertools.islice(outputs, further))
     plans = ((t_s, output.plan) for t_s, output in rows)
     write_table(
-        args.out, COLUMNS, (_row(t_s, plan, core.score_plan(plan)) for t_s, plan in plans)
+        args.out, COLUMNS, (row_of(t_s, plan, core.score_plan(plan)) for t_s, plan in plans)
     )
     return 0
 
@@ -178,7 +178,7 @@ def _schedule_row(core: Any, instant: Any) -> list[Cell]:
 
     plan = instant.output.plan
     scores = core.score_plan(plan)
-    row = _row(instant.t_s, plan, scores)
+    row = row_of(instant.t_s, plan, scores)
     if not scores.valid & library().SADDLE_VALID_STEP:  # before the first step and after the last
         for name in ("s_pend", "s_jump"):
             row[COLUMNS.index(name)] = None
@@ -192,7 +192,8 @@ def _schedule_row(core: Any, instant: Any) -> list[Cell]:
     ]
 
 
-def _row(t_s: float, plan: Any, scores: Any) -> list[Cell]:
+def row_of(t_s: float, plan: Any, scores: Any) -> list[Cell]:
+    """The cells of COLUMNS: a saddle_plan_t and its saddle_scores_t."""
     origin_m = plan.origin_x_nm * 1e-9
     com, velocity = plan.com_m, plan.com_velocity_m_s
     left, right = plan.foot_m
