@@ -25,6 +25,14 @@ static saddle_measurement_t good_measurement(void)
     };
 }
 
+static saddle_scores_t score(const saddle_posture_t *posture)
+{
+    saddle_scores_t scored;
+    memset(&scored, 0, sizeof scored);
+    saddle_score_posture(&config, &body, posture, &scored);
+    return scored;
+}
+
 void setUp(void)
 {
     config = paper_config();
@@ -249,7 +257,7 @@ static void test_validity_follows_from_what_is_known(void)
             .half_step_m = half_step ? 0.3f : NAN,
             .known = known,
         };
-        scores = saddle_score_posture(&config, &body, &posture);
+        scores = score(&posture);
         uint32_t expected = 0;
         expected |= speed ? (uint32_t)SADDLE_VALID_V_COMP : 0u;
         expected |= speed && half_step ? (uint32_t)SADDLE_VALID_STEP : 0u;
@@ -281,7 +289,7 @@ static void test_com_out_of_the_pendulum_s_reach_has_no_energy(void)
 
 /* ---- the paper's verdict ------------------------------------------------------------------- */
 
-/* Standing, and pushed ever harder: can_stop ends where the energy exceeds what the ankles absorb. */
+/* Standing, and pushed ever harder: can_stop ends where the energy exceeds the ankles' work. */
 static void test_can_stop_is_the_energy_within_the_ankles_work(void)
 {
     const point_t left = {0.0, 0.11};
@@ -300,11 +308,11 @@ static void test_can_stop_is_the_energy_within_the_ankles_work(void)
             .cop_m = {{0.0f, 0.11f}, {0.0f, -0.11f}},
             .known = (uint32_t)SADDLE_KNOWN_FEET | (uint32_t)SADDLE_KNOWN_VELOCITY,
         };
-        scores = saddle_score_posture(&config, &body, &posture);
+        scores = score(&posture);
         TEST_ASSERT_DOUBLE_WITHIN(5e-4, excess, scores.excess_stop_j);
         if (fabs(excess - work) > 1e-3) {
             TEST_ASSERT_EQUAL(excess < work, scores.can_stop);
-            TEST_ASSERT_EQUAL(excess < work, scores.paper_stable); /* there is no step to count on */
+            TEST_ASSERT_EQUAL(excess < work, scores.paper_stable); /* no step to count on */
         }
         stops += scores.can_stop ? 1 : 0;
     }
@@ -318,9 +326,9 @@ static void test_twice_the_ankles_work_stops_twice_the_energy(void)
         .known = (uint32_t)SADDLE_KNOWN_FEET | (uint32_t)SADDLE_KNOWN_VELOCITY,
     };
     posture.com_velocity_m_s.x = 0.5f; /* 7.9 J and 3 J on the way down */
-    TEST_ASSERT_FALSE(saddle_score_posture(&config, &body, &posture).can_stop);
+    TEST_ASSERT_FALSE(score(&posture).can_stop);
     config.ankle_work_factor = 2.0f;
-    TEST_ASSERT_TRUE(saddle_score_posture(&config, &body, &posture).can_stop);
+    TEST_ASSERT_TRUE(score(&posture).can_stop);
 }
 
 /* A walk at 1.2 m/s, too fast to stop: a stable step is all three scores above 0. */
@@ -348,7 +356,7 @@ static void test_paper_s_verdict_needs_all_three_scores_or_the_stop(void)
             .half_step_m = table[i].half_step,
             .known = (uint32_t)SADDLE_KNOWN_ALL,
         };
-        scores = saddle_score_posture(&config, &body, &posture);
+        scores = score(&posture);
         TEST_ASSERT_EQUAL_HEX32(SADDLE_VALID_ALL, scores.valid);
         TEST_ASSERT_EQUAL(table[i].stable, scores.paper_stable);
         TEST_ASSERT_EQUAL(table[i].speed_x == 0.0f, scores.can_stop);
@@ -366,10 +374,10 @@ static void test_paper_s_verdict_needs_the_scores_to_be_known(void)
     };
     for (size_t i = 0; i < COUNT_OF(missing); i++) {
         posture.known = (uint32_t)SADDLE_KNOWN_ALL & ~missing[i];
-        TEST_ASSERT_FALSE(saddle_score_posture(&config, &body, &posture).paper_stable);
+        TEST_ASSERT_FALSE(score(&posture).paper_stable);
     }
     posture.known = (uint32_t)SADDLE_KNOWN_ALL & ~(uint32_t)SADDLE_KNOWN_VELOCITY;
-    TEST_ASSERT_TRUE(saddle_score_posture(&config, &body, &posture).paper_stable);
+    TEST_ASSERT_TRUE(score(&posture).paper_stable);
 }
 
 /* A person who uses less of the base has less of a margin. */

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <saddlewalk/bytes.h>
 #include <saddlewalk/planner.h>
 #include <saddlewalk/saddle_math.h>
 
@@ -68,7 +69,7 @@ void saddle_planner_reset(saddle_planner_t *planner, const saddle_config_t *conf
 {
     const float left_y_m = saddle_landing_y_m(config, SADDLE_LEFT, 0.0f);
     const float right_y_m = saddle_landing_y_m(config, SADDLE_RIGHT, 0.0f);
-    *planner = (saddle_planner_t){.mode = (uint8_t)SADDLE_MODE_STANDING};
+    saddle_clear(planner, sizeof *planner);
     planner->cycle.quarter.stance = SADDLE_LEFT;
     planner->cycle.stance_y_m = left_y_m;
     planner->other_m.y = right_y_m - left_y_m;
@@ -391,7 +392,8 @@ uint32_t saddle_planner_join(saddle_planner_t *planner, const saddle_config_t *c
     };
     planner->mode = (uint8_t)SADDLE_MODE_WALKING;
     planner->shifting = false;
-    planner->cycle = (saddle_cycle_t){.next_heel_strike_rad = planner->heel_strike_rad};
+    saddle_clear(&planner->cycle, sizeof planner->cycle);
+    planner->cycle.next_heel_strike_rad = planner->heel_strike_rad;
     saddle_cycle_begin(&planner->cycle, config, body, &start);
     return limits;
 }
@@ -474,6 +476,24 @@ static void write_events(const saddle_planner_t *planner, const saddle_config_t 
     plan->time_to_toe_off_s = SADDLE_TIME_MAX_S;
 }
 
+/* While both feet stand there is no step, and its ankles rest. */
+static void write_no_step(saddle_plan_t *plan)
+{
+    plan->phase = 0;
+    plan->theta_rad = 0.0f;
+    plan->speed_m_s = 0.0f;
+    plan->step_length_m = 0.0f;
+    plan->step_width_m = 0.0f;
+    plan->foot_pitch_rad[SADDLE_LEFT] = 0.0f;
+    plan->foot_pitch_rad[SADDLE_RIGHT] = 0.0f;
+    plan->swing_velocity_m_s.x = 0.0f;
+    plan->swing_velocity_m_s.y = 0.0f;
+    plan->swing_velocity_m_s.z = 0.0f;
+    plan->knee_flexion_m = 0.0f;
+    plan->toe_off_rad = 0.0f;
+    plan->heel_strike_rad = 0.0f;
+}
+
 static void write_standing(const saddle_planner_t *planner, const saddle_config_t *config,
                            const saddle_body_t *body, saddle_plan_t *plan)
 {
@@ -494,17 +514,26 @@ static void write_standing(const saddle_planner_t *planner, const saddle_config_
         leg_m > body->pendulum_m * 1.00001f
             ? (saddle_vec2_t){com_m.x - planner->other_m.x, com_m.y - planner->other_m.y}
             : com_m;
-    plan->com_m = (saddle_vec3_t){com_m.x, planner->cycle.stance_y_m + com_m.y, z_m};
+    const float stance_y_m = planner->cycle.stance_y_m;
+    saddle_vec3_t *stance_foot_m = &plan->foot_m[stance];
+    saddle_vec3_t *other_foot_m = &plan->foot_m[saddle_other_side(stance)];
+    plan->com_m.x = com_m.x;
+    plan->com_m.y = stance_y_m + com_m.y;
+    plan->com_m.z = z_m;
     plan->com_velocity_m_s.x = rate_hz * dx_m;
     plan->com_velocity_m_s.y = rate_hz * dy_m;
     plan->com_velocity_m_s.z =
         -(near_m.x * plan->com_velocity_m_s.x + near_m.y * plan->com_velocity_m_s.y) / z_m;
-    plan->foot_m[stance] = (saddle_vec3_t){0.0f, planner->cycle.stance_y_m, 0.0f};
-    plan->foot_m[saddle_other_side(stance)] = (saddle_vec3_t){
-        planner->other_m.x, planner->cycle.stance_y_m + planner->other_m.y, 0.0f};
+    stance_foot_m->x = 0.0f;
+    stance_foot_m->y = stance_y_m;
+    stance_foot_m->z = 0.0f;
+    other_foot_m->x = planner->other_m.x;
+    other_foot_m->y = stance_y_m + planner->other_m.y;
+    other_foot_m->z = 0.0f;
     plan->leg_length_m = leg_m;
     plan->landing_m.x = planner->other_m.x;
-    plan->landing_m.y = planner->cycle.stance_y_m + planner->other_m.y;
+    plan->landing_m.y = stance_y_m + planner->other_m.y;
+    write_no_step(plan);
 }
 
 static uint32_t write_walking(const saddle_planner_t *planner, const saddle_config_t *config,
@@ -514,12 +543,17 @@ static uint32_t write_walking(const saddle_planner_t *planner, const saddle_conf
     const saddle_side_t stance = cycle->quarter.stance;
     const saddle_pose_t pose = saddle_cycle_pose(cycle, config, body);
     const float theta_rad = SADDLE_HALF_PI * ((float)cycle->phase + pose.progress);
+    plan->speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    plan->step_length_m = 2.0f * cycle->quarter.length_m;
+    plan->step_width_m = cycle->quarter.width_m;
     plan->phase = cycle->phase;
     plan->theta_rad = saddle_clamp(theta_rad, 0.0f, THETA_MAX_RAD);
     plan->com_m = pose.com_m;
     plan->com_m.y += cycle->stance_y_m;
     plan->com_velocity_m_s = pose.com_velocity_m_s;
-    plan->foot_m[stance] = (saddle_vec3_t){0.0f, cycle->stance_y_m, 0.0f};
+    plan->foot_m[stance].x = 0.0f;
+    plan->foot_m[stance].y = cycle->stance_y_m;
+    plan->foot_m[stance].z = 0.0f;
     plan->foot_m[saddle_other_side(stance)] = pose.swing.position_m;
     plan->foot_m[saddle_other_side(stance)].y += cycle->stance_y_m;
     plan->foot_pitch_rad[stance] = pose.stance_pitch_rad;
@@ -538,7 +572,7 @@ uint32_t saddle_planner_write(const saddle_planner_t *planner, const saddle_conf
     const saddle_cycle_t *cycle = &planner->cycle;
     const bool standing = planner->shifting || planner->mode == (uint8_t)SADDLE_MODE_STANDING;
     uint32_t limits = 0;
-    *plan = (saddle_plan_t){.valid = true};
+    plan->valid = true;
     plan->mode = planner->mode;
     plan->support = (uint8_t)cycle->quarter.stance;
     plan->step_count = cycle->step_count;
@@ -547,9 +581,6 @@ uint32_t saddle_planner_write(const saddle_planner_t *planner, const saddle_conf
     if (standing) {
         write_standing(planner, config, body, plan);
     } else {
-        plan->speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
-        plan->step_length_m = 2.0f * cycle->quarter.length_m;
-        plan->step_width_m = cycle->quarter.width_m;
         limits = write_walking(planner, config, body, plan);
     }
     write_events(planner, config, plan);

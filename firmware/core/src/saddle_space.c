@@ -12,6 +12,12 @@ static float length_m(float x_m, float y_m)
     return sqrtf(x_m * x_m + y_m * y_m);
 }
 
+saddle_bos_t saddle_bos_undefined(void)
+{
+    const saddle_bos_t bos = {{0.0f, 0.0f}, {0.0f, 0.0f}, 0.0f, 0.0f, false};
+    return bos;
+}
+
 saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m, float factor)
 {
     const saddle_vec2_t left = cop_m[SADDLE_LEFT];
@@ -19,10 +25,10 @@ saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m, float 
     const float dx_m = left.x - right.x;
     const float dy_m = left.y - right.y;
     const float distance_m = length_m(dx_m, dy_m);
-    saddle_bos_t bos = {{0.0f, 0.0f}, {0.0f, 0.0f}, 0.0f, 0.0f, false};
     if (distance_m < SADDLE_FEET_DISTANCE_MIN_M) {
-        return bos;
+        return saddle_bos_undefined();
     }
+    saddle_bos_t bos;
     bos.centre_m.x = 0.5f * (left.x + right.x);
     bos.centre_m.y = 0.5f * (left.y + right.y);
     bos.axis_x.x = dy_m / distance_m;

@@ -1,3 +1,4 @@
+#include <saddlewalk/bytes.h>
 #include <saddlewalk/saddlewalk.h>
 
 /* Marks a context that saddle_init() has filled. */
@@ -11,14 +12,14 @@ saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *co
     if (context == NULL) {
         return SADDLE_ERROR_NULL;
     }
-    *context = (saddle_context_t){.initialised = 0};
+    saddle_clear(context, sizeof *context);
     if (config == NULL) {
         return SADDLE_ERROR_NULL;
     }
     if (saddle_config_check(config) != NULL) {
         return SADDLE_ERROR_CONFIG;
     }
-    context->config = *config;
+    saddle_copy(&context->config, config, sizeof *config);
     context->body = saddle_body(config);
     saddle_planner_reset(&context->planner, config);
     context->initialised = INITIALISED;
@@ -76,12 +77,12 @@ static uint32_t take_command(saddle_context_t *context, const saddle_input_t *in
 /* The feet for the planner: what the supervisor would use of them. */
 static saddle_feet_t measured_feet(const saddle_measurement_t *measurement, uint32_t faults)
 {
-    const saddle_feet_t feet = {
-        .known = (faults & SADDLE_FAULTS_FEET) == 0u,
-        .cop_m = {measurement->foot[SADDLE_LEFT].cop_m, measurement->foot[SADDLE_RIGHT].cop_m},
-        .contact = {measurement->foot[SADDLE_LEFT].contact,
-                    measurement->foot[SADDLE_RIGHT].contact},
-    };
+    saddle_feet_t feet;
+    feet.known = (faults & SADDLE_FAULTS_FEET) == 0u;
+    for (int side = 0; side < 2; side++) {
+        feet.cop_m[side] = measurement->foot[side].cop_m;
+        feet.contact[side] = measurement->foot[side].contact;
+    }
     return feet;
 }
 
@@ -94,22 +95,34 @@ static saddle_intent_t intent_of(const saddle_plan_t *plan)
     const float share = walking ? 0.0f : 0.5f;
     const saddle_vec2_t origin_m = {stance_m.x + share * (other_m.x - stance_m.x),
                                     stance_m.y + share * (other_m.y - stance_m.y)};
-    const saddle_intent_t intent = {
-        .leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u,
-        .walking = walking,
-        .step = {
-            .stance = (saddle_side_t)plan->support,
-            .speed_m_s = plan->speed_m_s,
-            .half_behind_m = 0.5f * plan->step_length_m,
-            .width_behind_m = plan->step_width_m,
-            .landing_m = {plan->landing_m.x, plan->landing_m.y - stance_m.y},
-        },
-        .com = {
-            .com_m = {plan->com_m.x - origin_m.x, plan->com_m.y - origin_m.y},
-            .velocity_m_s = {plan->com_velocity_m_s.x, plan->com_velocity_m_s.y},
-        },
-    };
+    saddle_intent_t intent;
+    intent.leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u;
+    intent.walking = walking;
+    intent.step.stance = (saddle_side_t)plan->support;
+    intent.step.speed_m_s = plan->speed_m_s;
+    intent.step.half_behind_m = 0.5f * plan->step_length_m;
+    intent.step.width_behind_m = plan->step_width_m;
+    intent.step.landing_m.x = plan->landing_m.x;
+    intent.step.landing_m.y = plan->landing_m.y - stance_m.y;
+    intent.com.com_m.x = plan->com_m.x - origin_m.x;
+    intent.com.com_m.y = plan->com_m.y - origin_m.y;
+    intent.com.velocity_m_s.x = plan->com_velocity_m_s.x;
+    intent.com.velocity_m_s.y = plan->com_velocity_m_s.y;
     return intent;
+}
+
+/* The plan under the command, or under a stand where the inputs are lost. */
+static void plan_walk(saddle_context_t *context, const saddle_input_t *input, uint32_t faults,
+                      bool stop, uint32_t dt_us, saddle_output_t *output)
+{
+    static const saddle_command_t stand = {(uint8_t)SADDLE_COMMAND_STAND, 0.0f, 0.0f};
+    const saddle_feet_t feet = measured_feet(&input->measurement, faults);
+    output->limits |= stop ? (uint32_t)SADDLE_LIMIT_SAFE_STOP : 0u;
+    output->limits |=
+        saddle_planner_update(&context->planner, &context->config, &context->body,
+                              stop ? &stand : &context->command, &feet, dt_us);
+    output->limits |= saddle_planner_write(&context->planner, &context->config, &context->body,
+                                           &output->plan);
 }
 
 saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
@@ -118,24 +131,22 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     if (output == NULL) {
         return SADDLE_ERROR_NULL;
     }
-    *output = (saddle_output_t){.status = judge_call(context, input)};
-    if (output->status != SADDLE_OK) {
-        return output->status;
+    const saddle_status_t status = judge_call(context, input);
+    if (status != SADDLE_OK) {
+        saddle_clear(output, sizeof *output);
+        output->status = status;
+        return status;
     }
+    output->status = SADDLE_OK;
+    output->limits = 0;
     const uint32_t dt_us = elapsed_us(context, input->time_us, &output->limits);
     const float dt_s = (float)dt_us * 1.0e-6f;
-    const uint32_t faults = saddle_judge(&context->supervisor.watch, &context->config,
-                                         &input->measurement, dt_s);
-    output->faults |= take_command(context, input, dt_us);
+    const uint32_t faults =
+        saddle_judge(&context->supervisor.watch, &context->config, &input->measurement, dt_s);
+    output->faults = take_command(context, input, dt_us);
     const bool stop = saddle_safe_state_update(&context->safe_state, &context->config,
                                                faults | output->faults, dt_s);
-    const saddle_command_t stand = {.mode = (uint8_t)SADDLE_COMMAND_STAND};
-    output->limits |= stop ? (uint32_t)SADDLE_LIMIT_SAFE_STOP : 0u;
-    const saddle_feet_t feet = measured_feet(&input->measurement, faults);
-    output->limits |= saddle_planner_update(&context->planner, &context->config, &context->body,
-                                            stop ? &stand : &context->command, &feet, dt_us);
-    output->limits |= saddle_planner_write(&context->planner, &context->config, &context->body,
-                                           &output->plan);
+    plan_walk(context, input, faults, stop, dt_us, output);
     const saddle_intent_t intent = intent_of(&output->plan);
     output->faults |= saddle_supervisor_update(
         &context->supervisor, &context->config, &context->body, &input->measurement, faults, dt_s,
@@ -177,7 +188,7 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
     if (plan == NULL) {
         return SADDLE_ERROR_NULL;
     }
-    *plan = (saddle_plan_t){.valid = false};
+    saddle_clear(plan, sizeof *plan);
     if (context == NULL) {
         return SADDLE_ERROR_NULL;
     }
@@ -188,7 +199,8 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
         time_us - context->last_time_us > saddle_planner_horizon_us(&context->planner)) {
         return SADDLE_ERROR_TIME;
     }
-    saddle_planner_t planner = context->planner;
+    saddle_planner_t planner;
+    saddle_copy(&planner, &context->planner, sizeof planner);
     advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
     saddle_planner_write(&planner, &context->config, &context->body, plan);
     return SADDLE_OK;
@@ -200,22 +212,25 @@ saddle_status_t saddle_score_plan(const saddle_context_t *context, const saddle_
     if (scores == NULL) {
         return SADDLE_ERROR_NULL;
     }
-    *scores = (saddle_scores_t){.valid = 0};
+    saddle_clear(scores, sizeof *scores);
     if (context == NULL || plan == NULL) {
         return SADDLE_ERROR_NULL;
     }
     if (context->initialised != INITIALISED) {
         return SADDLE_ERROR_UNINITIALISED;
     }
-    const saddle_posture_t posture = {
-        .com_m = {plan->com_m.x, plan->com_m.y},
-        .com_velocity_m_s = {plan->com_velocity_m_s.x, plan->com_velocity_m_s.y},
-        .cop_m = {{plan->foot_m[SADDLE_LEFT].x, plan->foot_m[SADDLE_LEFT].y},
-                  {plan->foot_m[SADDLE_RIGHT].x, plan->foot_m[SADDLE_RIGHT].y}},
-        .v_comp_m_s = plan->speed_m_s,
-        .half_step_m = 0.5f * plan->step_length_m,
-        .known = plan->valid ? (uint32_t)SADDLE_KNOWN_ALL : 0u,
-    };
-    *scores = saddle_score_posture(&context->config, &context->body, &posture);
+    saddle_posture_t posture;
+    posture.com_m.x = plan->com_m.x;
+    posture.com_m.y = plan->com_m.y;
+    posture.com_velocity_m_s.x = plan->com_velocity_m_s.x;
+    posture.com_velocity_m_s.y = plan->com_velocity_m_s.y;
+    for (int side = 0; side < 2; side++) {
+        posture.cop_m[side].x = plan->foot_m[side].x;
+        posture.cop_m[side].y = plan->foot_m[side].y;
+    }
+    posture.v_comp_m_s = plan->speed_m_s;
+    posture.half_step_m = 0.5f * plan->step_length_m;
+    posture.known = plan->valid ? (uint32_t)SADDLE_KNOWN_ALL : 0u;
+    saddle_score_posture(&context->config, &context->body, &posture, scores);
     return SADDLE_OK;
 }

@@ -63,34 +63,57 @@ static bool stable_step(const saddle_scores_t *scores)
            scores->s_pend > 0.0f && scores->s_jump > 0.0f && scores->s_sw > 0.0f;
 }
 
-saddle_scores_t saddle_score_posture(const saddle_config_t *config, const saddle_body_t *body,
-                                     const saddle_posture_t *posture)
+static void score_walk(const saddle_config_t *config, const saddle_body_t *body,
+                       const saddle_posture_t *posture, saddle_scores_t *scores)
 {
-    saddle_scores_t scores = {.valid = 0};
     const uint32_t known = posture->known;
-    if ((known & SADDLE_KNOWN_VELOCITY) != 0u) {
-        scores.xcom_m = saddle_xcom_m(posture->com_m, posture->com_velocity_m_s,
-                                      body->natural_frequency_rad_s);
-    }
-    if ((known & SADDLE_KNOWN_SPEED) != 0u) {
-        scores.v_comp_m_s = posture->v_comp_m_s;
-        scores.valid |= (uint32_t)SADDLE_VALID_V_COMP;
-        if ((known & SADDLE_KNOWN_HALF_STEP) != 0u) {
-            score_steps(config, body, posture, &scores);
-        }
-        if ((known & SADDLE_KNOWN_FEET) != 0u) {
-            const float midline_m =
-                0.5f * (posture->cop_m[SADDLE_LEFT].y + posture->cop_m[SADDLE_RIGHT].y);
-            scores.s_sw = saddle_width_score(posture->com_m.y - midline_m,
-                                             saddle_step_width_m(config, posture->v_comp_m_s));
-            scores.valid |= (uint32_t)SADDLE_VALID_S_SW;
-        }
+    scores->v_comp_m_s = posture->v_comp_m_s;
+    scores->valid |= (uint32_t)SADDLE_VALID_V_COMP;
+    if ((known & SADDLE_KNOWN_HALF_STEP) != 0u) {
+        score_steps(config, body, posture, scores);
     }
     if ((known & SADDLE_KNOWN_FEET) != 0u) {
-        score_space(config, body, posture, &scores);
+        const float midline_m =
+            0.5f * (posture->cop_m[SADDLE_LEFT].y + posture->cop_m[SADDLE_RIGHT].y);
+        scores->s_sw = saddle_width_score(posture->com_m.y - midline_m,
+                                          saddle_step_width_m(config, posture->v_comp_m_s));
+        scores->valid |= (uint32_t)SADDLE_VALID_S_SW;
     }
-    scores.paper_stable = scores.can_stop || stable_step(&scores);
-    return scores;
+}
+
+static void score_nothing(saddle_scores_t *scores)
+{
+    scores->valid = 0;
+    scores->v_comp_m_s = 0.0f;
+    scores->s_pend = 0.0f;
+    scores->s_jump = 0.0f;
+    scores->s_sw = 0.0f;
+    scores->mos_com_m = 0.0f;
+    scores->mos_xcom_m = 0.0f;
+    scores->gravity_n.x = 0.0f;
+    scores->gravity_n.y = 0.0f;
+    scores->excess_stop_j = 0.0f;
+    scores->can_stop = false;
+    scores->xcom_m.x = 0.0f;
+    scores->xcom_m.y = 0.0f;
+    scores->bos = saddle_bos_undefined();
+}
+
+void saddle_score_posture(const saddle_config_t *config, const saddle_body_t *body,
+                          const saddle_posture_t *posture, saddle_scores_t *scores)
+{
+    score_nothing(scores);
+    if ((posture->known & SADDLE_KNOWN_VELOCITY) != 0u) {
+        scores->xcom_m = saddle_xcom_m(posture->com_m, posture->com_velocity_m_s,
+                                       body->natural_frequency_rad_s);
+    }
+    if ((posture->known & SADDLE_KNOWN_SPEED) != 0u) {
+        score_walk(config, body, posture, scores);
+    }
+    if ((posture->known & SADDLE_KNOWN_FEET) != 0u) {
+        score_space(config, body, posture, scores);
+    }
+    scores->paper_stable = scores->can_stop || stable_step(scores);
 }
 
 /* What was known and gave no score all the same. */
@@ -139,6 +162,22 @@ static seen_t seen_from(const saddle_config_t *config,
     };
     seen.bos = saddle_bos(seen.cop_m, config->cop_range_m, config->bos_factor);
     return seen;
+}
+
+static void compare_nothing(saddle_verdict_t *verdict)
+{
+    const saddle_vec2_t zero_m = {0.0f, 0.0f};
+    verdict->compared = false;
+    verdict->on_track = false;
+    verdict->excess_track_j = 0.0f;
+    verdict->ebos_com_m = 0.0f;
+    verdict->ebos_xcom_m = 0.0f;
+    verdict->xcom_deviation_m = zero_m;
+    verdict->recovery.found = false;
+    verdict->recovery.stops = false;
+    verdict->recovery.foot = 0;
+    verdict->recovery.landing_m = zero_m;
+    verdict->recovery.margin_m = 0.0f;
 }
 
 /* What any planned state says about the measured one. */
@@ -392,19 +431,21 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     const bool feet_known = (faults & SADDLE_FAULTS_FEET) == 0u;
     const bool com_known = (faults & SADDLE_FAULTS_COM) == 0u;
     const bool speed_known = steps->v_comp_known || intent->step.speed_m_s > 0.0f;
-    const saddle_posture_t posture = {
-        .com_velocity_m_s = measurement->com.velocity_m_s,
-        .cop_m = {measurement->foot[SADDLE_LEFT].cop_m, measurement->foot[SADDLE_RIGHT].cop_m},
-        .v_comp_m_s = steps->v_comp_known ? steps->v_comp_m_s : intent->step.speed_m_s,
-        .half_step_m = steps->half_step_m,
-        .known = (feet_known ? (uint32_t)SADDLE_KNOWN_FEET : 0u) |
-                 (com_known ? (uint32_t)SADDLE_KNOWN_VELOCITY : 0u) |
-                 (speed_known ? (uint32_t)SADDLE_KNOWN_SPEED : 0u) |
-                 (steps->half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u),
-    };
-    *scores = saddle_score_posture(config, body, &posture);
+    saddle_posture_t posture;
+    posture.com_m.x = 0.0f;
+    posture.com_m.y = 0.0f;
+    posture.com_velocity_m_s = measurement->com.velocity_m_s;
+    posture.cop_m[SADDLE_LEFT] = measurement->foot[SADDLE_LEFT].cop_m;
+    posture.cop_m[SADDLE_RIGHT] = measurement->foot[SADDLE_RIGHT].cop_m;
+    posture.v_comp_m_s = steps->v_comp_known ? steps->v_comp_m_s : intent->step.speed_m_s;
+    posture.half_step_m = steps->half_step_m;
+    posture.known = (feet_known ? (uint32_t)SADDLE_KNOWN_FEET : 0u) |
+                    (com_known ? (uint32_t)SADDLE_KNOWN_VELOCITY : 0u) |
+                    (speed_known ? (uint32_t)SADDLE_KNOWN_SPEED : 0u) |
+                    (steps->half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u);
+    saddle_score_posture(config, body, &posture, scores);
     const uint32_t all_faults = faults | judge_scores(posture.known, scores);
-    *verdict = (saddle_verdict_t){.compared = false};
+    compare_nothing(verdict);
     const bool walks = com_known && feet_known && scores->bos.defined &&
                        compare(config, body, steps, measurement, intent, verdict);
     announce(supervisor, config, reason_of(config, all_faults, walks, scores, verdict));

@@ -29,6 +29,9 @@ saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m, float 
 /** [E17] Signed Euclidean distance to the border, positive inside. 0 if the BoS is undefined. */
 float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m);
 
+/** The BoS of feet that are together or not known. */
+saddle_bos_t saddle_bos_undefined(void);
+
 /** [E26] Where a point that moves along direction_m_s leaves the BoS; the nearest point of the border
  *  for one at rest or outside. The point itself if the BoS is undefined. */
 saddle_vec2_t saddle_bos_exit_m(const saddle_bos_t *bos, saddle_vec2_t point_m,

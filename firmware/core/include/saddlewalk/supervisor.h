@@ -115,9 +115,9 @@ typedef struct {
     uint8_t next_level_ticks;
 } saddle_supervisor_t;
 
-/** Score a posture. Whatever is not known is not scored. */
-saddle_scores_t saddle_score_posture(const saddle_config_t *config, const saddle_body_t *body,
-                                     const saddle_posture_t *posture);
+/** Score a posture. Whatever is not known is not scored. Writes all of *scores. */
+void saddle_score_posture(const saddle_config_t *config, const saddle_body_t *body,
+                          const saddle_posture_t *posture, saddle_scores_t *scores);
 
 /** Follow the steps, score the posture in the frame of the CoM and give the verdict. faults: what
  *  saddle_judge() said. Returns the faults and those of the scores. */
