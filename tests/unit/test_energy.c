@@ -1,4 +1,4 @@
-/** The energy that stopping or returning to the plan has to absorb, against the formulas in double. */
+/** The energy that stopping or returning to the plan has to absorb, against the formulas. */
 #include "balance_twin.h"
 
 #include <saddlewalk/energy.h>
@@ -151,8 +151,8 @@ static void test_ankles_of_the_paper_s_body_absorb_six_joules(void)
                               saddle_ankle_work_j(&config, &body));
 }
 
-/* Just inside a foot, moving at w d_h to the border d_h ahead: the pendulum's kinetic energy and its
- * fall are half of W_max each, to second order: what is left falls with d_h^2. */
+/* Just inside a foot, moving at w d_h to the border d_h ahead: the pendulum's kinetic energy and
+ * its fall are half of W_max each, to second order: what is left falls with d_h^2. */
 static void test_com_over_a_foot_at_w_d_h_has_as_much_as_the_ankles_absorb(void)
 {
     const float ranges[] = {0.1f, 0.05f, 0.025f};

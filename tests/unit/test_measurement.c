@@ -263,7 +263,7 @@ static void test_feet_in_the_air_do_not_make_the_com_frozen(void)
 }
 
 /* A walk over the ground: steps of six ticks. The swing foot moves until it lands, during the first
- * tick of the next step, where both feet are down. The true speed is vx_m_s along x, none across. */
+ * tick of the next step, where both feet are down. vx_m_s is the true speed along x. */
 typedef struct {
     float com_x_m, foot_x_m[2];
     int tick, stance;
