@@ -7,11 +7,12 @@ python-can's own programs find it as `can_logger -i saddlewalk_udp`.
 """
 
 import errno
+import fcntl
 import ipaddress
 import select
 import socket
+import struct
 import time
-from pathlib import Path
 
 import can
 from can.interfaces.udp_multicast.utils import pack_message, unpack_message
@@ -25,7 +26,7 @@ SOCKETCAN_CHANNEL = "vcan0"
 _LOOPBACK = "127.0.0.1"
 _DATAGRAM_MAX = 65535
 _RECEIVE_BUFFER = 1 << 20
-_IFF_UP = 1
+_SIOCGIFFLAGS, _IFF_UP = 0x8913, 0x1
 
 
 class LoopbackUdpBus(can.BusABC):
@@ -126,17 +127,25 @@ def _sending_socket() -> socket.socket:
 
 
 def _socketcan_is_up(channel: str) -> bool:
+    """Asks the kernel: /sys may show the interfaces of another network namespace."""
+    request = struct.pack("16sh22x", channel.encode(), 0)
     try:
-        socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW).close()
-        flags = Path(f"/sys/class/net/{channel}/flags").read_text()
+        with socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as probe:
+            answer = fcntl.ioctl(probe, _SIOCGIFFLAGS, request)
     except (AttributeError, OSError):
         return False
-    return bool(int(flags, 16) & _IFF_UP)
+    return bool(struct.unpack("16sh22x", answer)[1] & _IFF_UP)
 
 
 def _open_socketcan(channel: str) -> can.BusABC:
+    """Takes CAN FD frames too, so that they can be counted."""
+    if not _socketcan_is_up(channel):
+        raise UserError(
+            f"CAN interface {channel} is not there or not up, or this kernel has no CAN:"
+            " give another, or --can udp"
+        )
     try:
-        return can.Bus(interface="socketcan", channel=channel)
+        return can.Bus(interface="socketcan", channel=channel, fd=True)
     except (OSError, can.CanError) as error:
         raise UserError(f"CAN interface {channel} cannot be opened ({error}): try udp") from error
 
