@@ -1,4 +1,27 @@
+import os
 import signal
+
+import pytest
+
+from saddlewalk.bus import private_udp
 
 # A job in the background of a script ignores Ctrl-C, and so would each process that a test starts.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_runtest_setup(item):
+    """tools/vcan/up says by SADDLEWALK_VCAN that vcan0 and vcan1 are there for the tests alone."""
+    if item.get_closest_marker("socketcan") and "SADDLEWALK_VCAN" not in os.environ:
+        pytest.skip("SocketCAN on vcan0 and vcan1: make test-socketcan")
+
+
+SOCKETCAN = [
+    pytest.param(f"socketcan:{name}", marks=pytest.mark.socketcan, id=name)
+    for name in ("vcan0", "vcan1")
+]
+
+
+@pytest.fixture(params=["udp", *SOCKETCAN])
+def spec(request) -> str:
+    """A bus that no other test uses now, of each transport: vcan0 is classic, vcan1 CAN FD."""
+    return private_udp() if request.param == "udp" else request.param

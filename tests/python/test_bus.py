@@ -1,4 +1,4 @@
-"""The loopback CAN bus and LCM as the host tools open them."""
+"""CAN on every transport, for Python's nodes and the firmware, and LCM as the tools open it."""
 
 import random
 import socket
@@ -10,18 +10,15 @@ from pathlib import Path
 import can
 import pytest
 
+from host_node import MESSAGES_PER_TICK, STANDING, WALK, lockstep
 from saddlewalk.bus import DEFAULT_GROUP, LoopbackUdpBus, describe, open_bus, private_udp
 from saddlewalk.errors import UserError
 from saddlewalk.lcmbus import open_lcm
 from saddlewalk.paths import built
+from saddlewalk.wire import Receiver, Sender
 
 WAIT_S = 2.0  # for what must come
 SILENCE_S = 0.05  # for what must not
-
-
-@pytest.fixture
-def spec():
-    return private_udp()
 
 
 @pytest.fixture
@@ -30,8 +27,196 @@ def nodes(spec):
         yield one, other
 
 
-def frame(identifier=0x123, data=b"\x01\x02\x03"):
-    return can.Message(arbitration_id=identifier, is_extended_id=False, data=data)
+def frame(identifier=0x123, data=b"\x01\x02\x03", **kind):
+    return can.Message(arbitration_id=identifier, data=data, **{"is_extended_id": False, **kind})
+
+
+def same(received: can.Message, sent: can.Message) -> bool:
+    return received.equals(sent, timestamp_delta=None, check_channel=False, check_direction=False)
+
+
+class TestBus:
+    """What every transport does alike."""
+
+    def test_a_frame_reaches_the_others_but_not_its_sender(self, nodes, spec):
+        one, other = nodes
+        with open_bus(spec) as third:
+            before = time.time()
+            one.send(frame())
+            for node in (other, third):
+                received = node.recv(WAIT_S)
+                assert same(received, frame())
+                assert before <= received.timestamp <= time.time()
+            assert one.recv(SILENCE_S) is None
+
+    def test_frames_keep_their_order(self, nodes):
+        one, other = nodes
+        for burst in range(20):
+            identifiers = range(50 * burst, 50 * (burst + 1))
+            for identifier in identifiers:
+                one.send(frame(identifier))
+            assert [other.recv(WAIT_S).arbitration_id for _ in identifiers] == list(identifiers)
+
+    @pytest.mark.parametrize(
+        "sent",
+        [
+            frame(0),
+            frame(0x7FF, bytes(range(8))),
+            frame(data=b""),
+            frame(0x1FFFFFFF, is_extended_id=True),
+            frame(data=None, dlc=5, is_remote_frame=True),
+        ],
+        ids=["lowest", "highest", "empty", "extended", "remote"],
+    )
+    def test_each_kind_of_frame_comes_as_it_was_sent(self, nodes, sent):
+        one, other = nodes
+        one.send(sent)
+        assert same(other.recv(WAIT_S), sent)
+
+    def test_a_node_hears_nothing_from_before_it_came(self, nodes, spec):
+        one, _ = nodes
+        one.send(frame())
+        with open_bus(spec) as late:
+            assert late.recv(SILENCE_S) is None
+
+    def test_nothing_comes_in_time(self, nodes):
+        start = time.monotonic()
+        assert nodes[0].recv(SILENCE_S) is None
+        assert nodes[0].recv(0) is None
+        assert SILENCE_S <= time.monotonic() - start < WAIT_S
+
+    def test_it_says_what_it_is(self, nodes, spec):
+        assert spec.partition(":")[2] in describe(nodes[0])
+
+    def test_the_firmware_answers_each_set_of_measurements(self, spec):
+        with lockstep(spec=spec) as host:
+            assert spec.partition(":")[2] in host.first_line
+            host.send("COMMAND", **WALK)
+            for number in range(50):
+                host.measure()
+                tick = host.tick()
+                assert len(tick) == MESSAGES_PER_TICK
+                assert {message["COUNTER"] for message in tick.values()} == {number % 16}
+            assert host.tick_frames(SILENCE_S) == []
+            assert host.stop().startswith("50 ticks, 0 late; frames: 151 accepted, rejected 0 ")
+
+    def test_the_firmware_counts_what_does_not_belong(self, spec):
+        with lockstep(spec=spec) as host:
+            com, *feet = (host.sender.frame(name, **STANDING[name]) for name in STANDING)
+            identifier, data = com.arbitration_id, com.data
+            strangers = [
+                frame(0x7FF, data),
+                frame(identifier, data[:7]),
+                frame(identifier, b""),
+                frame(identifier, data, is_extended_id=True),
+                frame(identifier, None, dlc=8, is_remote_frame=True),
+            ]
+            if takes_fd(spec):
+                strangers += [
+                    frame(identifier, data, is_fd=True),
+                    frame(identifier, data, is_fd=True, bitrate_switch=True),
+                    frame(identifier, bytes(data) * 8, is_fd=True),
+                ]
+            for message in (*feet, *strangers):
+                host.bus.send(message)
+            assert host.tick_frames(SILENCE_S) == []
+            host.bus.send(com)
+            assert host.tick()["HEALTH"]["REJECTED_FRAMES"] == len(strangers)
+            assert f" 0 bad counter, 0 bad version, {len(strangers)} malformed;" in host.stop()
+
+    def test_the_tools_count_what_does_not_belong(self, nodes, spec):
+        one, other = nodes
+        receiver = Receiver()
+        com = Sender().frame("MEASURED_COM", **STANDING["MEASURED_COM"])
+        strangers = [frame(com.arbitration_id, com.data, is_extended_id=True)]
+        if takes_fd(spec):
+            strangers.append(frame(com.arbitration_id, com.data, is_fd=True))
+        for message in (*strangers, com):
+            one.send(message)
+        assert [receiver.accept(other.recv(WAIT_S)) for _ in strangers] == [None] * len(strangers)
+        assert receiver.accept(other.recv(WAIT_S))[0] == "MEASURED_COM"
+        assert receiver.malformed == len(strangers)
+
+    def test_the_firmware_gives_the_same_bits_as_on_another_bus(self, spec):
+        assert lockstep_bytes(spec) == lockstep_bytes(private_udp())
+
+
+def takes_fd(spec: str) -> bool:
+    return spec != "socketcan:vcan0"
+
+
+def lockstep_bytes(spec: str) -> list[tuple[int, bytes]]:
+    """All that the firmware sends in a walk of 50 ticks."""
+    sent = []
+    with lockstep(spec=spec) as host:
+        host.send("COMMAND", **WALK)
+        for _ in range(50):
+            host.measure()
+            sent += [
+                (message.arbitration_id, bytes(message.data)) for message in host.tick_frames()
+            ]
+    return sent
+
+
+class TestUdp:
+    """What only the loopback bus has to be asked."""
+
+    @pytest.fixture
+    def spec(self):
+        return private_udp()
+
+    def test_buses_on_other_ports_do_not_hear(self, nodes):
+        one, _ = nodes
+        with open_bus(private_udp()) as apart:
+            one.send(frame())
+            assert apart.recv(SILENCE_S) is None
+
+    def test_junk_is_counted_and_does_not_hide_what_follows(self, nodes, spec):
+        one, other = nodes
+        rng = random.Random(1)
+        junk = [b"", b"\x81", b"\xdf\xff\xff\xff\xff", *(rng.randbytes(40) for _ in range(50))]
+        for datagram in junk:
+            send_datagram(spec, datagram)
+        one.send(frame())
+        assert other.recv(WAIT_S).arbitration_id == 0x123
+        assert other.malformed == len(junk)
+
+    def test_datagrams_never_leave_the_machine(self, nodes):
+        sending = nodes[0]._sending
+        assert sending.getsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL) == 0
+        interface = sending.getsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, 4)
+        assert interface == socket.inet_aton("127.0.0.1")
+
+    def test_python_can_finds_the_bus_by_name(self, spec):
+        with can.Bus(interface="saddlewalk_udp", channel=spec.removeprefix("udp:")) as bus:
+            assert isinstance(bus, LoopbackUdpBus)
+            assert describe(bus) == f"UDP {spec.removeprefix('udp:')} on loopback"
+
+    def test_a_port_that_is_taken_is_one_line(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as selfish:
+            selfish.bind(("", 0))
+            spec = f"udp:{DEFAULT_GROUP}:{selfish.getsockname()[1]}"
+            taken = r"Address already in use.*give another --can"
+            with pytest.raises(UserError, match=taken) as error:
+                open_bus(spec)
+        assert spec.removeprefix("udp:") in str(error.value)
+
+    def test_loopback_that_is_down_is_one_line(self):
+        unshare = ["unshare", "--user", "--map-root-user", "--net"]
+        if subprocess.run([*unshare, "true"], capture_output=True, check=False).returncode != 0:
+            pytest.skip("no user namespaces here")
+        emulate = [Path(sys.executable).with_name("saddlewalk"), "emulate", "--lcm", "memq://"]
+        host = [built("bin/saddlewalk-host"), "--lcm=none"]
+        for command in (emulate, host):
+            done = subprocess.run(
+                [*unshare, *command],
+                capture_output=True,
+                text=True,
+                check=False,
+                timeout=WAIT_S * 5,
+            )
+            assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+            assert "sudo ip link set lo up" in done.stderr
 
 
 def send_datagram(spec, datagram):
@@ -41,61 +226,6 @@ def send_datagram(spec, datagram):
         loopback = socket.inet_aton("127.0.0.1")
         stranger.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, loopback)
         stranger.sendto(datagram, (group, int(port)))
-
-
-def test_a_frame_reaches_the_others_but_not_its_sender(nodes):
-    one, other = nodes
-    before = time.time()
-    one.send(frame())
-    received = other.recv(WAIT_S)
-    assert received.equals(frame(), timestamp_delta=None, check_channel=False)
-    assert before <= received.timestamp <= time.time()
-    assert one.recv(SILENCE_S) is None
-
-
-def test_frames_keep_their_order(nodes):
-    one, other = nodes
-    for identifier in range(1000):
-        one.send(frame(identifier))
-    assert [other.recv(WAIT_S).arbitration_id for _ in range(1000)] == list(range(1000))
-
-
-def test_buses_on_other_ports_do_not_hear(nodes):
-    one, _ = nodes
-    with open_bus(private_udp()) as apart:
-        one.send(frame())
-        assert apart.recv(SILENCE_S) is None
-
-
-def test_junk_is_counted_and_does_not_hide_what_follows(nodes, spec):
-    one, other = nodes
-    rng = random.Random(1)
-    junk = [b"", b"\x81", b"\xdf\xff\xff\xff\xff", *(rng.randbytes(40) for _ in range(50))]
-    for datagram in junk:
-        send_datagram(spec, datagram)
-    one.send(frame())
-    assert other.recv(WAIT_S).arbitration_id == 0x123
-    assert other.malformed == len(junk)
-
-
-def test_nothing_comes_in_time(nodes):
-    start = time.monotonic()
-    assert nodes[0].recv(SILENCE_S) is None
-    assert nodes[0].recv(0) is None
-    assert SILENCE_S <= time.monotonic() - start < WAIT_S
-
-
-def test_datagrams_never_leave_the_machine(nodes):
-    sending = nodes[0]._sending
-    assert sending.getsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL) == 0
-    interface = sending.getsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, 4)
-    assert interface == socket.inet_aton("127.0.0.1")
-
-
-def test_python_can_finds_the_bus_by_name(spec):
-    with can.Bus(interface="saddlewalk_udp", channel=spec.removeprefix("udp:")) as bus:
-        assert isinstance(bus, LoopbackUdpBus)
-        assert describe(bus) == f"UDP {spec.removeprefix('udp:')} on loopback"
 
 
 @pytest.mark.parametrize(
@@ -118,29 +248,6 @@ def test_a_wrong_spec_is_named(spec):
         open_bus(spec)
     assert spec.partition(":")[2] in str(error.value)
     assert "\n" not in str(error.value)
-
-
-def test_a_port_that_is_taken_is_one_line():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as selfish:
-        selfish.bind(("", 0))
-        spec = f"udp:{DEFAULT_GROUP}:{selfish.getsockname()[1]}"
-        with pytest.raises(UserError, match=r"Address already in use.*give another --can") as error:
-            open_bus(spec)
-    assert spec.removeprefix("udp:") in str(error.value)
-
-
-def test_loopback_that_is_down_is_one_line():
-    unshare = ["unshare", "--user", "--map-root-user", "--net"]
-    if subprocess.run([*unshare, "true"], capture_output=True, check=False).returncode != 0:
-        pytest.skip("no user namespaces here")
-    emulate = [Path(sys.executable).with_name("saddlewalk"), "emulate", "--lcm", "memq://"]
-    host = [built("bin/saddlewalk-host"), "--lcm=none"]
-    for command in (emulate, host):
-        done = subprocess.run(
-            [*unshare, *command], capture_output=True, text=True, check=False, timeout=WAIT_S * 5
-        )
-        assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-        assert "sudo ip link set lo up" in done.stderr
 
 
 def test_lcm_that_cannot_be_opened_is_one_line(capfd):
