@@ -4,6 +4,7 @@ import argparse
 import difflib
 import math
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -37,14 +38,22 @@ def load_config(args: argparse.Namespace, ankle: str | None = None) -> Any:
         fields["body_mass_kg"] = args.mass
     if ankle is not None:
         fields["ankle"] = ANKLES[ankle]
-    config = ffi().new("saddle_config_t *")
-    config[0] = library().saddle_config_default(DEFAULT_HEIGHT_M, DEFAULT_MASS_KG)
-    for name, value in fields.items():
-        setattr(config, name, value)
+    config = configuration(fields)
     bad_field = library().saddle_config_check(config)
     if bad_field != ffi().NULL:
         name = ffi().string(bad_field).decode()
         raise UserError(f"{_origin(name, args)}{describe_bad_field(name, config)}")
+    return config
+
+
+def configuration(fields: Mapping[str, float | int]) -> Any:
+    """A saddle_config_t: the paper's defaults, but for these fields. Not checked."""
+    from saddlewalk.core import ffi, library
+
+    config = ffi().new("saddle_config_t *")
+    config[0] = library().saddle_config_default(DEFAULT_HEIGHT_M, DEFAULT_MASS_KG)
+    for name, value in fields.items():
+        setattr(config, name, value)
     return config
 
 

@@ -193,7 +193,7 @@ def _label_keys(point: Mapping) -> list[str]:
 
 
 def _read_trc(path: Path) -> Capture:
-    """Tab-separated text: three lines of header, a line of marker names, one of axes, the frames."""
+    """Tab-separated text: three header lines, one of marker names, one of axes, then frames."""
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except OSError as error:

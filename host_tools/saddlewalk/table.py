@@ -32,23 +32,37 @@ def write_table(out: str | None, columns: Sequence[str], rows: Iterable[Sequence
     if out is None or out == "-":
         _write_rows(sys.stdout, columns, rows)
         return
-    path = Path(out)
     try:
-        if path.exists() and not path.is_file():
-            with path.open("w", newline="") as file:
-                _write_rows(file, columns, rows)
-        else:
-            _write_whole(path, columns, rows)
+        with _whole_file(Path(out)) as file:
+            _write_rows(file, columns, rows)
     except OSError as error:
         raise UserError(f"--out {out}: {error.strerror}") from error
 
 
-def _write_whole(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+def write_text(option: str, out: str, text: str) -> None:
+    """Write to the file `out`, whole or not at all; "-": to standard output."""
+    if out == "-":
+        sys.stdout.write(text)
+        return
+    try:
+        with _whole_file(Path(out)) as file:
+            file.write(text)
+    except OSError as error:
+        raise UserError(f"{option} {out}: {error.strerror}") from error
+
+
+@contextlib.contextmanager
+def _whole_file(path: Path) -> Iterator[TextIO]:
+    """A file that is at `path` once all is written. What is no ordinary file is written to."""
+    if path.exists() and not path.is_file():
+        with path.open("w", newline="") as file:
+            yield file
+        return
     path = path.resolve()  # a link stays one
     descriptor, partial = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(descriptor, "w", newline="") as file:
-            _write_rows(file, columns, rows)
+            yield file
         mask = os.umask(0)
         os.umask(mask)
         Path(partial).chmod(0o666 & ~mask)
