@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 /** Room for the longest message, which is config_t. */
-#define SADDLE_LCM_MESSAGE_MAX 4096
+enum { SADDLE_LCM_MESSAGE_MAX = 4096 };
 
 /** The messages of a tick's output. */
 typedef enum {

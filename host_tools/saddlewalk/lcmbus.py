@@ -22,7 +22,7 @@ def open_lcm(url: str | None = None) -> lcm.LCM:
     """
     url = url or DEFAULT_URL
     try:
-        with _standard_error_silent():
+        with standard_error_silent():
             return lcm.LCM(url)
     except RuntimeError as error:
         right = f"for a multicast route, run `{ROUTE}`"
@@ -50,7 +50,7 @@ def listen(bus: lcm.LCM, for_s: float) -> None:
 
 
 @contextlib.contextmanager
-def _standard_error_silent() -> Iterator[None]:
+def standard_error_silent() -> Iterator[None]:
     """The LCM library explains at length why it cannot start; the error does so in one line."""
     saved = os.dup(2)
     with Path(os.devnull).open("wb") as nowhere:

@@ -186,3 +186,18 @@ class Receiver:
             self._alive[identifier] = _Alive(counter, counter)
             return True
         return self._alive[identifier].accept(counter)
+
+
+def raw_signals(identifier: int, data: bytes) -> dict[str, int]:
+    """All signals of a frame as they are on the wire, CRC and COUNTER too, whatever they say."""
+    return _by_id[identifier]._codec.decode(data, decode_choices=False, scaling=False)
+
+
+def message_name(identifier: int) -> str | None:
+    """The name that the database has for an identifier, if any."""
+    return _by_id[identifier].name if identifier in _by_id else None
+
+
+def identifier(name: str) -> int:
+    """Of a message of the database."""
+    return _by_name[name].id

@@ -1,0 +1,77 @@
+"""`saddlewalk rerun`: a logged run, computed again from its inputs and compared bit for bit."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from saddlewalk.config import add_body_options
+from saddlewalk.errors import UserError
+
+if TYPE_CHECKING:
+    from saddlewalk.rerun import Report
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser(
+        "rerun",
+        help="compute a logged run again and compare every output, bit for bit",
+        description="Feed the inputs of a logged run to the core again and compare every output "
+        "bit for bit. Status 0: every output in the log was computed again and is equal; 1: one "
+        "differs, or could not be computed; 2: no log of a run. An LCM log holds all the inputs of "
+        "any run. A CAN log (candump's .log, .blf, .asc, ...) holds those of a run in lockstep "
+        "from its start, but for the configuration, which the options give; of HEALTH, the counts "
+        "of late ticks and rejected frames are not compared.",
+    )
+    parser.add_argument("log", type=Path, metavar="LOG", help="an LCM log or a CAN log")
+    add_body_options(parser)
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    from saddlewalk.config import load_config
+    from saddlewalk.logs import is_lcm_log, load_can_log, load_lcm_log
+
+    if is_lcm_log(args.log):
+        from saddlewalk.rerun import rerun_lcm
+
+        _refuse_body_options(args)
+        log = load_lcm_log(args.log)
+        report = _named(args.log, rerun_lcm, log.records)
+    else:
+        from saddlewalk.rerun_can import rerun_can
+
+        log = load_can_log(args.log)
+        report = _named(args.log, rerun_can, log.records, load_config(args))
+    if log.broken:
+        report.gaps.append(log.broken)
+    print("\n".join(told(report)))
+    return 0 if report.sound else 1
+
+
+def _refuse_body_options(args: argparse.Namespace) -> None:
+    for option in ("height", "mass", "config"):
+        value = getattr(args, option)
+        if value is not None:
+            raise UserError(f"--{option} {value}: an LCM log has its own configuration")
+
+
+def _named(log: Path, compute: Any, *arguments: Any) -> "Report":
+    try:
+        return compute(*arguments)
+    except UserError as error:
+        raise UserError(f"{log}: {error}") from error
+
+
+def told(report: "Report") -> list[str]:
+    """The report in lines, the first difference before all that follows from it."""
+    runs = "1 run" if report.runs == 1 else f"{report.runs} runs"
+    lines = [f"{report.source}: {runs}, {report.ticks} ticks computed again"]
+    if report.first:
+        lines += [
+            str(report.first),
+            f"{report.different_ticks} of {report.ticks} ticks differ from what was recorded",
+        ]
+    lines += [f"not compared: {gap}" for gap in report.not_compared]
+    if report.sound:
+        lines.append(f"all {report.compared} recorded outputs are equal, bit for bit")
+    return lines

@@ -1,0 +1,77 @@
+"""The core with the wire and the LCM messages, in this process, as saddlewalk-host links them."""
+
+import functools
+from typing import Any
+
+import cffi
+
+from saddlewalk.core import describe_bad_field
+from saddlewalk.errors import UserError
+from saddlewalk.paths import built
+from saddlewalk.ticks import MESSAGES
+
+
+@functools.cache
+def ffi() -> cffi.FFI:
+    """The declarations of the firmware's public headers, as the build preprocessed them."""
+    declarations = cffi.FFI()
+    declarations.cdef(built("saddlewalk_firmware_cdef.h").read_text())
+    return declarations
+
+
+@functools.cache
+def library() -> Any:
+    return ffi().dlopen(str(built("lib/libsaddlewalk_firmware.so")))
+
+
+def default_config() -> Any:
+    """A saddle_config_t of this library, to be filled."""
+    config = ffi().new("saddle_config_t *")
+    config[0] = library().saddle_config_default(1.0, 1.0)
+    return config
+
+
+def config_of(core_config: Any) -> Any:
+    """A saddle_config_t of saddlewalk.config as one of this library."""
+    from saddlewalk import core
+
+    config = ffi().new("saddle_config_t *")
+    ffi().memmove(config, core.ffi().buffer(core_config), ffi().sizeof("saddle_config_t"))
+    return config
+
+
+class Firmware:
+    """One context of the core, ticked with whole inputs; its outputs as messages and frames."""
+
+    def __init__(self, config: Any) -> None:
+        """config: a saddle_config_t of this library. Raises UserError naming a bad field."""
+        bad_field = library().saddle_config_check(config)
+        if bad_field != ffi().NULL:
+            raise UserError(describe_bad_field(ffi().string(bad_field).decode(), config))
+        self._context = ffi().new("saddle_context_t *")
+        self._bytes = ffi().new("uint8_t[]", library().SADDLE_LCM_MESSAGE_MAX)
+        self.output = ffi().new("saddle_output_t *")
+        library().saddle_init(self._context, config)
+
+    def tick(self, inputs: Any) -> Any:
+        """One saddle_tick() with a saddle_input_t; returns the saddle_output_t, which is reused."""
+        library().saddle_tick(self._context, inputs, self.output)
+        return self.output
+
+    def messages(self, utime_us: int) -> dict[str, bytes]:
+        """The last output as the host publishes it: channel -> encoded message."""
+        lib = library()
+        encoded = {}
+        for part in range(lib.SADDLE_LCM_OUTPUTS):
+            size = lib.saddle_lcm_encode_output(part, self.output, utime_us, self._bytes)
+            channel = ffi().string(lib.saddle_lcm_channel(part)).decode()
+            encoded[channel] = bytes(ffi().buffer(self._bytes, size))
+        return encoded
+
+    def frames(self, counter: int, late_ticks: int, rejected_frames: int) -> dict[int, bytes]:
+        """The last output as the host sends it on CAN: identifier -> data."""
+        frames = ffi().new("saddle_frame_t[]", len(MESSAGES))
+        health = ffi().new("saddle_wire_health_t *")
+        health.late_ticks, health.rejected_frames = late_ticks, rejected_frames
+        library().saddle_wire_encode_output(self.output, health, counter, frames)
+        return {frame.id: bytes(frame.data) for frame in frames}

@@ -1,0 +1,308 @@
+"""`saddlewalk rerun`: a log gives the same bits again, and what is not the same is named."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import can
+import lcm
+import pytest
+
+from conftest import private_lcm
+from saddlewalk import wire
+from saddlewalk.bus import private_udp
+from saddlewalk.cli import main
+from saddlewalk.logs import load_lcm_log
+
+TICKS = 163  # of 13 s
+OUTPUTS = TICKS * 5
+FRAMES = TICKS * 18
+
+
+def rerun(log: Path, capsys, *options: str) -> tuple[int, str, str]:
+    capsys.readouterr()
+    status = main(["rerun", str(log), *options])
+    told = capsys.readouterr()
+    return status, told.out, told.err
+
+
+def write_events(path: Path, events) -> Path:
+    log = lcm.EventLog(str(path), "w", overwrite=True)
+    for event in events:
+        log.write_event(event.logged_us, event.channel, event.data)
+    log.close()
+    return path
+
+
+class Changed:
+    """An event of a log, with other bytes."""
+
+    def __init__(self, event, data: bytes) -> None:
+        self.logged_us, self.channel, self.data = event.logged_us, event.channel, data
+
+
+def events_of(walk: Path) -> list:
+    return load_lcm_log(walk / "walk.lcmlog").records
+
+
+def test_a_log_is_equal_to_the_bit(walk, capsys):
+    status, told, _ = rerun(walk / "walk.lcmlog", capsys)
+    assert status == 0
+    assert f"lockstep: 1 run, {TICKS} ticks computed again" in told
+    assert f"all {OUTPUTS} recorded outputs are equal" in told
+
+
+def test_a_run_in_real_time_is_equal_too(tmp_path, capsys):
+    """With the ages that its measurements had; of which a CAN log does not know."""
+    options = ["--can", private_udp(), "--lcm", private_lcm()]
+    body = ["--height", "1.6", "--mass", "48.123"]
+    assert main(["demo", "--duration", "2", "--out", str(tmp_path), *options, *body]) == 0
+    status, told, _ = rerun(tmp_path / "walk.lcmlog", capsys)
+    assert status == 0 and "real time: 1 run" in told
+    status, _, told = rerun(tmp_path / "walk.candump.log", capsys, *body)
+    assert (status, told.count("\n")) == (2, 1)
+    assert "rerun its LCM log, which has the ages" in told
+
+
+@pytest.mark.parametrize(
+    ("channel", "byte", "named"),
+    [
+        ("PLAN", -1, "SADDLEWALK_PLAN landing_m[1]: recorded"),
+        ("PLAN", 17, "SADDLEWALK_PLAN mode: recorded 0, recomputed 1"),
+        ("SCORES", -1, "SADDLEWALK_SCORES xcom_m[1]: recorded"),
+        ("VERDICT", 16, "SADDLEWALK_VERDICT level: recorded"),
+        ("BOS", -1, "SADDLEWALK_BOS y_m[15]: recorded"),
+        ("HEALTH", 20, "SADDLEWALK_HEALTH status: recorded 1, recomputed 0"),
+        ("PLAN", 0, "SADDLEWALK_PLAN: recorded 156 bytes of no such type"),
+    ],
+)
+def test_one_flipped_bit_of_an_output_is_named(walk, tmp_path, capsys, channel, byte, named):
+    events = events_of(walk)
+    index = [i for i, e in enumerate(events) if e.channel == f"SADDLEWALK_{channel}"][5]
+    data = bytearray(events[index].data)
+    data[byte] ^= 1
+    events[index] = Changed(events[index], bytes(data))
+    status, told, _ = rerun(write_events(tmp_path / "log", events), capsys)
+    assert status == 1
+    assert told.splitlines()[1].startswith(f"tick 5 (0.40 s), {named}")
+    assert f"1 of {TICKS} ticks differ" in told
+
+
+def test_a_flipped_bit_of_an_input_shows_in_the_outputs(walk, tmp_path, capsys):
+    events = events_of(walk)
+    index = [i for i, e in enumerate(events) if e.channel == "SADDLEWALK_INPUT"][40]
+    data = bytearray(events[index].data)
+    data[8 + 8 + 4 + 1 + 4 + 4 + 4 + 3] ^= 1  # the CoM's velocity along x, its last bit
+    events[index] = Changed(events[index], bytes(data))
+    status, told, _ = rerun(write_events(tmp_path / "log", events), capsys)
+    assert status == 1
+    assert "tick 40 (3.20 s), SADDLEWALK_" in told and "(0x" in told
+
+
+def test_every_field_of_the_configuration_is_logged_and_counts(walk, tmp_path, capsys):
+    from saddlewalk.firmware import ffi
+    from saddlewalk.lcm_types import config_t
+
+    events = events_of(walk)
+    config = config_t.decode(events[0].data)
+    assert events[0].channel == "SADDLEWALK_CONFIG"
+    fields = [name for name, _ in ffi().typeof("saddle_config_t").fields]
+    assert [*config.name, "ankle"] == fields
+    assert (config.library_version, config.wire_version) == ("0.1.0", wire.WIRE_VERSION)
+    config.value = list(config.value)
+    config.value[config.name.index("body_mass_kg")] += 1
+    events[0] = Changed(events[0], config.encode())
+    status, told, _ = rerun(write_events(tmp_path / "log", events), capsys)
+    assert status == 1
+    assert "gravity_n" in told and "the configuration with tick 12 is another" in told
+
+
+def test_a_configuration_of_another_version_is_refused(walk, tmp_path, capsys):
+    from saddlewalk.lcm_types import config_t
+
+    events = events_of(walk)
+    config = config_t.decode(events[0].data)
+    config.library_version = "9.9.9"
+    config.name = ["stride_magic", *config.name[1:]]
+    events[0] = Changed(events[0], config.encode())
+    status, _, told = rerun(write_events(tmp_path / "log", events), capsys)
+    assert (status, told.count("\n")) == (2, 1)
+    assert "saddlewalk 9.9.9, and stride_magic is not a field" in told
+
+
+def test_a_log_from_mid_run_says_so(walk, tmp_path, capsys):
+    events = events_of(walk)
+    status, _, told = rerun(write_events(tmp_path / "log", events[500:]), capsys)
+    assert (status, told.count("\n")) == (2, 1)
+    assert "the log begins in mid-run" in told and f"to {TICKS - 1} cannot be computed" in told
+
+
+def test_runs_after_one_another_are_each_computed(walk, tmp_path, capsys):
+    events = events_of(walk)
+    log = write_events(tmp_path / "log", [*events, *events])
+    status, told, _ = rerun(log, capsys)
+    assert status == 0 and f"2 runs, {2 * TICKS} ticks" in told
+    log = write_events(tmp_path / "log", [*events[500:], *events])
+    status, told, _ = rerun(log, capsys)
+    assert status == 1
+    assert f"1 run, {TICKS} ticks" in told and "not compared: the log begins in mid-run" in told
+
+
+def test_a_lost_input_ends_the_comparison_there(walk, tmp_path, capsys):
+    events = events_of(walk)
+    lost = [i for i, e in enumerate(events) if e.channel == "SADDLEWALK_INPUT"][60]
+    status, told, _ = rerun(
+        write_events(tmp_path / "log", events[:lost] + events[lost + 1 :]), capsys
+    )
+    assert status == 1
+    assert "60 ticks computed again" in told and "differ" not in told
+    assert f"tick 59 is followed by tick 61: ticks 61 to {TICKS - 1} cannot be computed" in told
+
+
+def test_lost_outputs_are_told_and_the_others_compared(walk, tmp_path, capsys):
+    events = [e for e in events_of(walk) if e.channel != "SADDLEWALK_BOS"]
+    status, told, _ = rerun(write_events(tmp_path / "log", events), capsys)
+    assert status == 1 and f"{TICKS} ticks computed again" in told
+    assert f"SADDLEWALK_BOS of {TICKS} ticks is not in the log, the first time of tick 0" in told
+
+
+def test_a_log_without_inputs_says_so(walk, tmp_path, capsys):
+    events = [e for e in events_of(walk) if e.channel != "SADDLEWALK_INPUT"]
+    status, _, told = rerun(write_events(tmp_path / "log", events), capsys)
+    assert (status, told.count("\n")) == (2, 1) and "nothing came on SADDLEWALK_INPUT" in told
+
+
+def test_a_log_that_was_cut_says_so(walk, tmp_path, capsys):
+    cut = tmp_path / "cut.lcmlog"
+    cut.write_bytes((walk / "walk.lcmlog").read_bytes()[:-150])
+    status, told, _ = rerun(cut, capsys)
+    assert status == 1
+    assert "bytes of it are no event, as in a file that was cut" in told and "differ" not in told
+
+
+@pytest.mark.parametrize(
+    ("content", "named"),
+    [
+        (b"", "is empty"),
+        (b"\x89PNG" + bytes(100), "neither an LCM log nor a CAN log"),
+        (bytes.fromhex("eda1da01"), "not one event"),
+        (bytes.fromhex("eda1da01") + bytes(range(256)), "not one event"),
+    ],
+)
+def test_what_is_no_log_is_one_line(tmp_path, capsys, content, named):
+    file = tmp_path / "file"
+    file.write_bytes(content)
+    status, out, told = rerun(file, capsys)
+    assert (status, out, told.count("\n")) == (2, "", 1)
+    assert str(file) in told and named in told
+
+
+def test_a_missing_file_and_options_for_an_lcm_log_are_one_line(walk, tmp_path, capsys):
+    status, _, told = rerun(tmp_path / "none.lcmlog", capsys)
+    assert (status, told.count("\n")) == (2, 1) and "No such file" in told
+    status, _, told = rerun(walk / "walk.lcmlog", capsys, "--mass", "70")
+    assert (status, told.count("\n")) == (2, 1) and "--mass 70.0: an LCM log has its own" in told
+
+
+def can_log(path: Path, frames) -> Path:
+    with can.Logger(path) as log:
+        for frame in frames:
+            log.on_message_received(frame)
+    return path
+
+
+def frames_of(walk: Path) -> list[can.Message]:
+    with can.LogReader(walk / "walk.candump.log") as log:
+        return list(log)
+
+
+@pytest.mark.parametrize("suffix", [".log", ".blf", ".asc"])
+def test_a_can_log_is_equal_to_the_bit(walk, tmp_path, capsys, suffix):
+    status, told, _ = rerun(can_log(tmp_path / f"walk{suffix}", frames_of(walk)), capsys)
+    assert status == 0
+    assert f"{TICKS} ticks" in told and f"all {FRAMES} recorded outputs are equal" in told
+
+
+def test_one_flipped_bit_of_a_frame_is_named(walk, tmp_path, capsys):
+    frames = frames_of(walk)
+    scores = [frame for frame in frames if frame.arbitration_id == 0x131][7]
+    scores.data[2] ^= 1
+    status, told, _ = rerun(can_log(tmp_path / "walk.log", frames), capsys)
+    assert status == 1
+    assert "tick 7 (0.56 s), SCORES_MARGIN MOS_COM: recorded " in told
+    assert f"1 of {TICKS} ticks differ" in told
+
+
+def test_a_can_log_with_another_body_differs(walk, capsys):
+    status, told, _ = rerun(walk / "walk.candump.log", capsys, "--mass", "80")
+    assert status == 1 and "SCORES_FORCE GRAVITY" in told
+
+
+def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
+    frames = frames_of(walk)
+    log = can_log(tmp_path / "mid.log", frames[22 * 5 :])
+    status, _, told = rerun(log, capsys)
+    assert (status, told.count("\n")) == (2, 1) and "the log begins in mid-run" in told
+    answered = [i for i, frame in enumerate(frames) if frame.arbitration_id == 0x140]
+    status, told, _ = rerun(
+        can_log(tmp_path / "lost.log", frames[: answered[9] - 17] + frames[answered[9] + 1 :]),
+        capsys,
+    )
+    assert status == 1 and "9 ticks computed" in told and "2 sets of measurements came" in told
+    log = can_log(tmp_path / "frame.log", frames[: answered[9] - 1] + frames[answered[9] :])
+    status, told, _ = rerun(log, capsys)
+    assert status == 1 and "RECOVERY of 1 ticks is not in the log, the first time of tick 9" in told
+
+
+def test_frames_that_the_host_refused_are_refused_again(walk, tmp_path, capsys):
+    """Bad CRC, a repeat, foreign identifiers, other kinds of frame."""
+    frames = frames_of(walk)
+    com = next(frame for frame in frames if frame.arbitration_id == 0x110)
+    bad = can.Message(
+        arbitration_id=0x110, is_extended_id=False, data=bytes(com.data[:7]) + b"\xaa"
+    )
+    junk = [
+        com,
+        bad,
+        can.Message(arbitration_id=0x7FF, is_extended_id=False, data=b"x"),
+        can.Message(arbitration_id=0x140, is_extended_id=True, data=bytes(8)),
+        can.Message(arbitration_id=0x140, is_extended_id=False, is_remote_frame=True),
+        can.Message(arbitration_id=0x140, is_extended_id=False, data=b"abc"),
+    ]
+    status, told, _ = rerun(
+        can_log(tmp_path / "junk.log", frames[:44] + junk + frames[44:]), capsys
+    )
+    assert status == 0, told
+
+
+def test_a_broken_can_log_says_where(walk, tmp_path, capsys):
+    lines = (walk / "walk.candump.log").read_text().splitlines()
+    broken = tmp_path / "broken.log"
+    broken.write_text("\n".join([*lines[:1000], "(17953285 saddlewalk"]))
+    status, told, _ = rerun(broken, capsys)
+    assert status == 1 and "cannot be read on after 1000 records" in told
+    broken.write_text("no frame\n")
+    status, _, told = rerun(broken, capsys)
+    assert (status, told.count("\n")) == (2, 1) and "holds no CAN frame" in told
+    other = can_log(
+        tmp_path / "other.log", [can.Message(arbitration_id=0x7FF, is_extended_id=False)]
+    )
+    status, _, told = rerun(other, capsys)
+    assert (status, told.count("\n")) == (2, 1) and "none of the frames COMMAND" in told
+
+
+def test_nothing_of_this_machine_is_asked(walk, tmp_path):
+    """The log alone, elsewhere, without LCM's network or a home folder."""
+    log = shutil.copy(walk / "walk.lcmlog", tmp_path / "from-afar")
+    script = Path(sys.executable).with_name("saddlewalk")
+    done = subprocess.run(
+        ["unshare", "--user", "--net", str(script), "rerun", log],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if "unshare" in done.stderr:
+        pytest.skip("no user namespaces here")
+    assert done.returncode == 0, done.stderr
