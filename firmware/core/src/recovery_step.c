@@ -17,24 +17,28 @@ static interval_t common(interval_t a, interval_t b)
     return both;
 }
 
-/* Forward: the XCoM no further ahead than steps of full reach sustain, nor behind the heel. */
+/* Forward: the XCoM no further ahead than steps of full reach sustain, nor further behind than the
+ * heel or, in a slow walk, than planned. */
 static interval_t along(const saddle_config_t *config, const saddle_body_t *body,
-                        float step_time_s, float xcom_m)
+                        const saddle_catch_t *to_catch, float xcom_m)
 {
     const float reach_m = 2.0f * body->half_step_max_m;
-    const float growth = saddle_exp(body->natural_frequency_rad_s * step_time_s);
+    const float growth = saddle_exp(body->natural_frequency_rad_s * to_catch->step_time_s);
     const float sustained_m = growth > 1.0f ? reach_m / (growth - 1.0f) : 2.0f * reach_m;
+    const float planned_m = to_catch->landing_m.x - to_catch->xcom_m.x;
+    const float behind_m = planned_m > config->cop_range_m ? planned_m : config->cop_range_m;
     const interval_t reached = {-reach_m, reach_m};
-    const interval_t caught = {xcom_m - sustained_m, xcom_m + config->cop_range_m};
+    const interval_t caught = {xcom_m - sustained_m, xcom_m + behind_m};
     return common(reached, caught);
 }
 
 /* Outward from the stance foot: beyond the XCoM, but so that the step after it reaches back over
  * it. That one may be as quick as foresight_s. */
 static interval_t across(const saddle_config_t *config, const saddle_body_t *body,
-                         float step_time_s, float xcom_m)
+                         const saddle_catch_t *to_catch, float xcom_m)
 {
-    const float quick_s = step_time_s < config->foresight_s ? step_time_s : config->foresight_s;
+    const float quick_s = to_catch->step_time_s < config->foresight_s ? to_catch->step_time_s
+                                                                      : config->foresight_s;
     const float growth = saddle_exp(body->natural_frequency_rad_s * quick_s);
     const interval_t reached = {config->recovery_width_min_m, config->recovery_width_max_m};
     const interval_t caught = {xcom_m + config->recovery_margin_m,
@@ -59,8 +63,8 @@ saddle_recovery_t saddle_recovery_step(const saddle_config_t *config, const sadd
     const saddle_vec2_t wanted_m = {
         to_catch->landing_m.x + config->recovery_follow * departure_m.x,
         to_catch->landing_m.y + config->recovery_follow * departure_m.y};
-    const interval_t x = along(config, body, to_catch->step_time_s, xcom_m.x);
-    const interval_t y = across(config, body, to_catch->step_time_s, outward * xcom_m.y);
+    const interval_t x = along(config, body, to_catch, xcom_m.x);
+    const interval_t y = across(config, body, to_catch, outward * xcom_m.y);
     const float room_x_m = x.max_m - x.min_m;
     const float room_y_m = y.max_m - y.min_m;
     saddle_recovery_t recovery = {.found = room_x_m >= 0.0f && room_y_m >= 0.0f};

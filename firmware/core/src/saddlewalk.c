@@ -40,28 +40,32 @@ static saddle_status_t judge_call(const saddle_context_t *context, const saddle_
     return SADDLE_OK;
 }
 
+static uint32_t sum_us(uint32_t a_us, uint32_t b_us)
+{
+    return b_us < UINT32_MAX - a_us ? a_us + b_us : UINT32_MAX;
+}
+
+/* Time since the last tick, as far as the plan may advance; what it holds has aged by all of it. */
 static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t *limits)
 {
     const uint64_t since_us = context->ticked ? time_us - context->last_time_us : 0u;
+    const uint32_t aged_us = since_us < UINT32_MAX ? (uint32_t)since_us : UINT32_MAX;
     const uint32_t limit_us = (uint32_t)(context->config.tick_max_s * 1.0e6f);
     context->last_time_us = time_us;
     context->ticked = true;
-    if (since_us > limit_us) {
+    context->command_age_us = sum_us(context->command_age_us, aged_us);
+    if (aged_us > limit_us) {
         *limits |= (uint32_t)SADDLE_LIMIT_TICK_GAP;
-        const uint32_t gap_us = since_us < UINT32_MAX ? (uint32_t)since_us : UINT32_MAX;
-        saddle_track_gap(&context->supervisor.steps, (float)gap_us * 1.0e-6f);
+        saddle_track_gap(&context->supervisor.steps, (float)aged_us * 1.0e-6f);
         return limit_us;
     }
-    return (uint32_t)since_us;
+    return aged_us;
 }
 
-/* The last usable command holds, and ages. */
-static uint32_t take_command(saddle_context_t *context, const saddle_input_t *input,
-                             uint32_t dt_us)
+/* The last usable command holds. */
+static uint32_t take_command(saddle_context_t *context, const saddle_input_t *input)
 {
-    const uint32_t rest_us = UINT32_MAX - context->command_age_us;
     uint32_t faults = 0;
-    context->command_age_us += dt_us < rest_us ? dt_us : rest_us;
     if (saddle_command_usable(&input->command)) {
         context->command = input->command;
         context->command_age_us = input->command_age_us;
@@ -143,7 +147,7 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     const float dt_s = (float)dt_us * 1.0e-6f;
     const uint32_t faults =
         saddle_judge(&context->supervisor.watch, &context->config, &input->measurement, dt_s);
-    output->faults = take_command(context, input, dt_us);
+    output->faults = take_command(context, input);
     const bool stop = saddle_safe_state_update(&context->safe_state, &context->config,
                                                faults | output->faults, dt_s);
     plan_walk(context, input, faults, stop, dt_us, output);

@@ -1,27 +1,26 @@
 #include <saddlewalk/measurement.h>
 #include <saddlewalk/safe_state.h>
 
-static const uint32_t NEEDED = (uint32_t)SADDLE_FAULT_COMMAND_STALE | SADDLE_FAULTS_COM |
-                               SADDLE_FAULTS_FEET;
+static const uint32_t UNUSABLE = SADDLE_FAULTS_COM | SADDLE_FAULTS_FEET;
 
 static const uint32_t LOST =
-    (uint32_t)SADDLE_FAULT_COMMAND_STALE | (uint32_t)SADDLE_FAULT_COM_STALE |
-    (uint32_t)SADDLE_FAULT_COM_FROZEN | (uint32_t)SADDLE_FAULT_LEFT_STALE |
-    (uint32_t)SADDLE_FAULT_LEFT_FROZEN | (uint32_t)SADDLE_FAULT_RIGHT_STALE |
-    (uint32_t)SADDLE_FAULT_RIGHT_FROZEN;
+    (uint32_t)SADDLE_FAULT_COM_STALE | (uint32_t)SADDLE_FAULT_COM_FROZEN |
+    (uint32_t)SADDLE_FAULT_LEFT_STALE | (uint32_t)SADDLE_FAULT_LEFT_FROZEN |
+    (uint32_t)SADDLE_FAULT_RIGHT_STALE | (uint32_t)SADDLE_FAULT_RIGHT_FROZEN;
 
 bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_config_t *config,
                               uint32_t faults, float dt_s)
 {
-    const bool good = (faults & NEEDED) == 0u;
-    state->armed = state->armed || good;
-    state->lost_s = good ? 0.0f : state->lost_s + dt_s;
-    state->good_s = good ? state->good_s + dt_s : 0.0f;
+    const bool commanded = (faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) == 0u;
+    const bool measured = (faults & UNUSABLE) == 0u;
+    state->armed = state->armed || measured;
+    state->lost_s = measured ? 0.0f : state->lost_s + dt_s;
     const bool lost = (faults & LOST) != 0u || state->lost_s > config->com_max_age_s;
-    if (state->armed && lost) {
+    const bool good = commanded && (measured || !state->armed);
+    state->good_s = good ? state->good_s + dt_s : 0.0f;
+    if (!commanded || (state->armed && lost)) {
         state->stopped = true;
-    }
-    if (state->good_s >= config->resume_time_s) {
+    } else if (good && state->good_s >= config->resume_time_s) {
         state->stopped = false;
     }
     return state->stopped;

@@ -8,15 +8,16 @@
 
 /** State, part of the context. */
 typedef struct {
-    bool armed;    /**< all inputs were usable once: from then on they are needed */
-    bool stopped;  /**< and were lost since, until they have been good for resume_time_s */
+    bool armed;    /**< measurements were usable once: from then on they are needed */
+    bool stopped;  /**< inputs were lost, and have not been good for resume_time_s since */
     float lost_s;  /**< since a measurement was last usable */
-    float good_s;  /**< since all inputs are usable again */
+    float good_s;  /**< since all that is needed is usable */
 } saddle_safe_state_t;
 
-/** Follow the inputs' saddle_fault_t bits. True while the walk must stop: from the tick in which an
- *  input is stale or frozen, or measurements have been unusable for com_max_age_s, until all have
- *  been good for resume_time_s. A plan that never was given measurements does not need them. */
+/** Follow the inputs' saddle_fault_t bits. True while the walk must stop: from the tick in which the
+ *  command is stale, a measurement is stale or frozen, or measurements have been unusable in another
+ *  way for com_max_age_s, until all have been good for resume_time_s. A plan that never was given
+ *  measurements does not need them; feet that are together are no loss. */
 bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_config_t *config,
                               uint32_t faults, float dt_s);
 
