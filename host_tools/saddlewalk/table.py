@@ -9,7 +9,7 @@ import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TextIO
+from typing import IO, TextIO
 
 from saddlewalk.errors import UserError
 
@@ -33,7 +33,7 @@ def write_table(out: str | None, columns: Sequence[str], rows: Iterable[Sequence
         _write_rows(sys.stdout, columns, rows)
         return
     try:
-        with _whole_file(Path(out)) as file:
+        with whole_file(Path(out)) as file:
             _write_rows(file, columns, rows)
     except OSError as error:
         raise UserError(f"--out {out}: {error.strerror}") from error
@@ -45,23 +45,24 @@ def write_text(option: str, out: str, text: str) -> None:
         sys.stdout.write(text)
         return
     try:
-        with _whole_file(Path(out)) as file:
+        with whole_file(Path(out)) as file:
             file.write(text)
     except OSError as error:
         raise UserError(f"{option} {out}: {error.strerror}") from error
 
 
 @contextlib.contextmanager
-def _whole_file(path: Path) -> Iterator[TextIO]:
+def whole_file(path: Path, mode: str = "w") -> Iterator[IO]:
     """A file that is at `path` once all is written. What is no ordinary file is written to."""
+    newline = None if "b" in mode else ""
     if path.exists() and not path.is_file():
-        with path.open("w", newline="") as file:
+        with path.open(mode, newline=newline) as file:
             yield file
         return
     path = path.resolve()  # a link stays one
     descriptor, partial = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
-        with os.fdopen(descriptor, "w", newline="") as file:
+        with os.fdopen(descriptor, mode, newline=newline) as file:
             yield file
         mask = os.umask(0)
         os.umask(mask)
