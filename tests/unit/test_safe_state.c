@@ -1,0 +1,167 @@
+/** When lost inputs stop the walk, and when it may go on. */
+#include "core_test.h"
+
+#include <saddlewalk/safe_state.h>
+
+static const float DT_S = 0.08f;
+
+static saddle_config_t config;
+static saddle_safe_state_t state;
+
+void setUp(void)
+{
+    config = paper_config();
+    config.com_max_age_s = 0.24f;
+    config.resume_time_s = 1.0f;
+    memset(&state, 0, sizeof state);
+}
+
+void tearDown(void) {}
+
+static bool update(uint32_t faults)
+{
+    return saddle_safe_state_update(&state, &config, faults, DT_S);
+}
+
+static const uint32_t LOST[] = {
+    SADDLE_FAULT_COMMAND_STALE, SADDLE_FAULT_COM_STALE,   SADDLE_FAULT_COM_FROZEN,
+    SADDLE_FAULT_LEFT_STALE,    SADDLE_FAULT_LEFT_FROZEN, SADDLE_FAULT_RIGHT_STALE,
+    SADDLE_FAULT_RIGHT_FROZEN};
+
+static const uint32_t UNUSABLE[] = {SADDLE_FAULT_COM_RANGE, SADDLE_FAULT_LEFT_RANGE,
+                                    SADDLE_FAULT_RIGHT_RANGE, SADDLE_FAULT_AIRBORNE,
+                                    SADDLE_FAULT_FEET_CROSSED};
+
+static void test_good_inputs_never_stop(void)
+{
+    for (int tick = 0; tick < 1000; tick++) {
+        TEST_ASSERT_FALSE(update(0));
+    }
+}
+
+static void test_input_that_is_stale_or_frozen_stops_in_the_same_tick(void)
+{
+    for (size_t i = 0; i < COUNT_OF(LOST); i++) {
+        setUp();
+        update(0);
+        TEST_ASSERT_TRUE(update(LOST[i]));
+    }
+}
+
+/* A number out of range for a tick or two may be a glitch: three ticks are 0.24 s. */
+static void test_measurement_that_is_unusable_stops_once_it_has_been_for_com_max_age(void)
+{
+    for (size_t i = 0; i < COUNT_OF(UNUSABLE); i++) {
+        setUp();
+        update(0);
+        for (int tick = 1; tick <= 6; tick++) {
+            TEST_ASSERT_EQUAL(tick > 3, update(UNUSABLE[i]));
+        }
+    }
+}
+
+static void test_glitches_do_not_add_up(void)
+{
+    for (int tick = 0; tick < 100; tick++) {
+        TEST_ASSERT_FALSE(update(tick % 4 == 0 ? 0u : (uint32_t)SADDLE_FAULT_COM_RANGE));
+    }
+}
+
+/* One fault after the other: it is the time without any usable measurement that counts. */
+static void test_unusable_in_turn_is_unusable_all_the_time(void)
+{
+    update(0);
+    for (int tick = 1; tick <= 6; tick++) {
+        TEST_ASSERT_EQUAL(tick > 3, update(UNUSABLE[(size_t)tick % COUNT_OF(UNUSABLE)]));
+    }
+}
+
+/* What says nothing about the inputs' being there stops nothing. */
+static void test_other_faults_do_not_stop(void)
+{
+    const uint32_t others[] = {SADDLE_FAULT_COMMAND, SADDLE_FAULT_FEET_TOGETHER,
+                               SADDLE_FAULT_SPEED_INFEASIBLE};
+    for (size_t i = 0; i < COUNT_OF(others); i++) {
+        update(0);
+        for (int tick = 0; tick < 20; tick++) {
+            TEST_ASSERT_FALSE(update(others[i]));
+        }
+    }
+}
+
+/* Good for 12 ticks, 0.96 s, is not yet 1 s; 13 ticks are. */
+static void test_walk_goes_on_after_all_has_been_good_for_resume_time(void)
+{
+    update(0);
+    update(SADDLE_FAULT_COM_STALE);
+    for (int tick = 1; tick <= 20; tick++) {
+        TEST_ASSERT_EQUAL(tick < 13, update(0));
+    }
+}
+
+static void test_time_to_go_on_begins_anew_with_every_fault(void)
+{
+    const uint32_t again[] = {SADDLE_FAULT_LEFT_STALE, SADDLE_FAULT_COM_RANGE,
+                              SADDLE_FAULT_COMMAND_STALE};
+    for (size_t i = 0; i < COUNT_OF(again); i++) {
+        setUp();
+        update(0);
+        update(SADDLE_FAULT_COM_STALE);
+        for (int tick = 0; tick < 12; tick++) {
+            TEST_ASSERT_TRUE(update(0));
+        }
+        TEST_ASSERT_TRUE(update(again[i]));
+        for (int tick = 1; tick <= 13; tick++) {
+            TEST_ASSERT_EQUAL(tick < 13, update(0));
+        }
+    }
+}
+
+static void test_without_a_resume_time_the_first_good_tick_goes_on(void)
+{
+    config.resume_time_s = 0.0f;
+    update(0);
+    TEST_ASSERT_TRUE(update(SADDLE_FAULT_RIGHT_STALE));
+    TEST_ASSERT_FALSE(update(0));
+}
+
+/* A planner alone, as in a simulation: nothing was ever measured, so nothing is missed. */
+static void test_measurements_that_never_came_are_not_needed(void)
+{
+    const uint32_t never =
+        SADDLE_FAULT_COM_STALE | SADDLE_FAULT_LEFT_STALE | SADDLE_FAULT_RIGHT_STALE;
+    for (int tick = 0; tick < 100; tick++) {
+        TEST_ASSERT_FALSE(update(never));
+    }
+    update(0); /* from now on they are */
+    TEST_ASSERT_TRUE(update(SADDLE_FAULT_LEFT_STALE));
+}
+
+/* But a command is: without one nobody steers. */
+static void test_stale_command_stops_a_planner_alone_too(void)
+{
+    const uint32_t never =
+        SADDLE_FAULT_COM_STALE | SADDLE_FAULT_LEFT_STALE | SADDLE_FAULT_RIGHT_STALE;
+    update(never);
+    TEST_ASSERT_TRUE(update(never | (uint32_t)SADDLE_FAULT_COMMAND_STALE));
+    for (int tick = 1; tick <= 20; tick++) {
+        TEST_ASSERT_EQUAL(tick < 13, update(never));
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_good_inputs_never_stop);
+    RUN_TEST(test_input_that_is_stale_or_frozen_stops_in_the_same_tick);
+    RUN_TEST(test_measurement_that_is_unusable_stops_once_it_has_been_for_com_max_age);
+    RUN_TEST(test_glitches_do_not_add_up);
+    RUN_TEST(test_unusable_in_turn_is_unusable_all_the_time);
+    RUN_TEST(test_other_faults_do_not_stop);
+    RUN_TEST(test_walk_goes_on_after_all_has_been_good_for_resume_time);
+    RUN_TEST(test_time_to_go_on_begins_anew_with_every_fault);
+    RUN_TEST(test_without_a_resume_time_the_first_good_tick_goes_on);
+    RUN_TEST(test_measurements_that_never_came_are_not_needed);
+    RUN_TEST(test_stale_command_stops_a_planner_alone_too);
+    return UNITY_END();
+}
