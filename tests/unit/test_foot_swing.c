@@ -5,6 +5,14 @@
 
 static saddle_swing_t swing;
 
+static saddle_swing_state_t foot_at(const saddle_swing_t *line, float progress, float x_m,
+                                    saddle_sample_t lateral, float speed_m_s, float rate_hz)
+{
+    saddle_swing_state_t foot;
+    saddle_foot_swing(line, progress, x_m, lateral, speed_m_s, rate_hz, &foot);
+    return foot;
+}
+
 void setUp(void)
 {
     swing = (saddle_swing_t){
@@ -20,7 +28,7 @@ static void test_foot_lies_on_the_line_through_stance_and_com(void)
         const float x = random_in(&state, -1.0f, 1.0f);
         const saddle_sample_t lateral = {random_in(&state, -0.1f, -0.02f), 0.0f};
         swing.line_y_m = random_in(&state, -0.3f, -0.15f);
-        const saddle_swing_state_t foot = saddle_foot_swing(&swing, 0.5f, x, lateral, 0.0f, 1.0f);
+        const saddle_swing_state_t foot = foot_at(&swing, 0.5f, x, lateral, 0.0f, 1.0f);
         const double expected = (double)swing.line_y_m * (double)x / (double)lateral.value;
         TEST_ASSERT_DOUBLE_WITHIN(2e-6, expected, foot.position_m.x); /* up to 15 m: steps of 1e-6 */
         ASSERT_SAME_FLOAT(swing.line_y_m, foot.position_m.y);
@@ -90,7 +98,7 @@ static void test_swing_and_its_velocity_whole_and_half(void)
             const double x = 1.2 * (p - 0.4) / 1.7;
             const saddle_sample_t lateral = {(float)(-0.04 - 0.02 * x), -0.02f};
             const saddle_swing_state_t foot =
-                saddle_foot_swing(&swing, (float)p, (float)x, lateral, 1.2f, 1.7f);
+                foot_at(&swing, (float)p, (float)x, lateral, 1.2f, 1.7f);
             const float position[] = {foot.position_m.x, foot.position_m.y, foot.position_m.z};
             const float velocity[] = {foot.velocity_m_s.x, foot.velocity_m_s.y,
                                       foot.velocity_m_s.z};
@@ -107,10 +115,10 @@ static void test_foot_leaves_where_it_stood_and_lands_on_the_line_both_at_rest(v
 {
     const saddle_sample_t lateral = {-0.05f, 0.0f};
     swing.offset_m = (saddle_vec2_t){-0.08f, 0.03f};
-    const saddle_swing_state_t lift = saddle_foot_swing(&swing, 0.0f, -0.35f, lateral, 0.0f, 1.7f);
+    const saddle_swing_state_t lift = foot_at(&swing, 0.0f, -0.35f, lateral, 0.0f, 1.7f);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.78, lift.position_m.x);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.07, lift.position_m.y);
-    const saddle_swing_state_t land = saddle_foot_swing(&swing, 1.0f, 0.35f, lateral, 0.0f, 1.7f);
+    const saddle_swing_state_t land = foot_at(&swing, 1.0f, 0.35f, lateral, 0.0f, 1.7f);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.7, land.position_m.x);
     ASSERT_SAME_FLOAT(swing.line_y_m, land.position_m.y);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, lift.position_m.z);
@@ -118,7 +126,7 @@ static void test_foot_leaves_where_it_stood_and_lands_on_the_line_both_at_rest(v
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, lift.velocity_m_s.z);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, land.velocity_m_s.z);
     ASSERT_SAME_FLOAT(swing.clearance_m,
-                      saddle_foot_swing(&swing, 0.5f, 0.0f, lateral, 0.0f, 1.7f).position_m.z);
+                      foot_at(&swing, 0.5f, 0.0f, lateral, 0.0f, 1.7f).position_m.z);
 }
 
 int main(void)

@@ -23,8 +23,7 @@ static float toe_off_elongation_m(const saddle_body_t *body, const saddle_quarte
 }
 
 saddle_transition_t saddle_transition(const saddle_config_t *config, const saddle_body_t *body,
-                                      const saddle_quarter_t *quarter, float speed_m_s,
-                                      float heel_strike_rad)
+                                      const saddle_quarter_t *quarter, float heel_strike_rad)
 {
     const float lead_m = config->cop_range_m * (1.0f - saddle_cos(heel_strike_rad));
     const float sine =
@@ -33,32 +32,40 @@ saddle_transition_t saddle_transition(const saddle_config_t *config, const saddl
     saddle_transition_t transition;
     transition.heel_strike_rad = heel_strike_rad;
     transition.toe_off_rad = 2.0f * saddle_asin(limited);
-    transition.heel_strike_lead_s = lead_m / speed_m_s;
+    transition.heel_strike_lead_m = lead_m;
     transition.toe_off_limited = sine < 0.0f || sine > 1.0f;
     return transition;
 }
 
-saddle_ankle_state_t saddle_ankle(const saddle_config_t *config, const saddle_body_t *body,
-                                  const saddle_transition_t *transition, float time_s,
-                                  bool toe_off_acts)
+static void at_rest(const saddle_body_t *body, saddle_ankle_state_t *ankle)
 {
-    saddle_ankle_state_t ankle = {0.0f, 0.0f, body->pendulum_m, 0.0f, 0.0f};
+    ankle->toe_off_rad = 0.0f;
+    ankle->heel_strike_rad = 0.0f;
+    ankle->leg_length_m = body->pendulum_m;
+    ankle->knee_flexion_m = 0.0f;
+    ankle->leg_rate_m_s = 0.0f;
+}
+
+void saddle_ankle(const saddle_config_t *config, const saddle_body_t *body,
+                  const saddle_transition_t *transition, float since_strike_s, bool toe_off_acts,
+                  saddle_ankle_state_t *ankle)
+{
+    at_rest(body, ankle);
     if (config->ankle == SADDLE_ANKLE_RIGID) {
-        return ankle;
+        return;
     }
-    const float u = (time_s + transition->heel_strike_lead_s) / config->ankle_time_constant_s;
+    const float u = since_strike_s / config->ankle_time_constant_s;
     const float progress = saddle_erf(u);
     const float progress_rate =
         TWO_OVER_SQRT_PI * saddle_exp(-u * u) / config->ankle_time_constant_s;
-    ankle.toe_off_rad = transition->toe_off_rad * (1.0f + progress);
-    ankle.heel_strike_rad = transition->heel_strike_rad * (1.0f - progress);
+    ankle->toe_off_rad = transition->toe_off_rad * (1.0f + progress);
+    ankle->heel_strike_rad = transition->heel_strike_rad * (1.0f - progress);
 
-    const float angle_rad = toe_off_acts ? ankle.toe_off_rad : ankle.heel_strike_rad;
+    const float angle_rad = toe_off_acts ? ankle->toe_off_rad : ankle->heel_strike_rad;
     const float angle_rate = progress_rate * (toe_off_acts ? transition->toe_off_rad
                                                            : -transition->heel_strike_rad);
-    ankle.leg_length_m += elongation_m(config, angle_rad);
-    ankle.leg_rate_m_s = config->cop_range_m * saddle_cos(0.5f * angle_rad) * angle_rate;
-    return ankle;
+    ankle->leg_length_m += elongation_m(config, angle_rad);
+    ankle->leg_rate_m_s = config->cop_range_m * saddle_cos(0.5f * angle_rad) * angle_rate;
 }
 
 void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m,
@@ -87,19 +94,19 @@ saddle_sample_t saddle_cycloid(const saddle_body_t *body, const saddle_quarter_t
     return height;
 }
 
-saddle_ankle_state_t saddle_ankle_for_leg(const saddle_config_t *config, const saddle_body_t *body,
-                                          float leg_length_m, bool toe_off_acts, bool *limited)
+bool saddle_ankle_for_leg(const saddle_config_t *config, const saddle_body_t *body,
+                          float leg_length_m, bool toe_off_acts, saddle_ankle_state_t *ankle)
 {
     const float elongation = leg_length_m - body->pendulum_m;
     const float sine = elongation / (2.0f * config->cop_range_m);
     const float angle_rad = 2.0f * saddle_asin(saddle_clamp(sine, 0.0f, 1.0f));
-    saddle_ankle_state_t ankle = {0.0f, 0.0f, leg_length_m, 0.0f, 0.0f};
+    at_rest(body, ankle);
+    ankle->leg_length_m = leg_length_m;
     if (toe_off_acts) {
-        ankle.toe_off_rad = angle_rad;
+        ankle->toe_off_rad = angle_rad;
     } else {
-        ankle.heel_strike_rad = angle_rad;
+        ankle->heel_strike_rad = angle_rad;
     }
-    ankle.knee_flexion_m = elongation < 0.0f ? -elongation : 0.0f;
-    *limited = sine > 1.0f;
-    return ankle;
+    ankle->knee_flexion_m = elongation < 0.0f ? -elongation : 0.0f;
+    return sine <= 1.0f;
 }

@@ -22,8 +22,9 @@ static void swing_height(float air, float air_rate_hz, float clearance_m,
     foot->velocity_m_s.z = clearance_m * saddle_min_jerk_slope(profile) * rate_hz;
 }
 
-saddle_swing_state_t saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
-                                       saddle_sample_t lateral, float speed_m_s, float rate_hz)
+void saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
+                       saddle_sample_t lateral, float speed_m_s, float rate_hz,
+                       saddle_swing_state_t *foot)
 {
     const float duration = swing->land_progress - swing->lift_progress;
     const float air = saddle_clamp((progress - swing->lift_progress) / duration, 0.0f, 1.0f);
@@ -31,11 +32,9 @@ saddle_swing_state_t saddle_foot_swing(const saddle_swing_t *swing, float progre
     const float fade = 1.0f - saddle_min_jerk(2.0f * air);
     const float fade_rate_hz = -2.0f * saddle_min_jerk_slope(2.0f * air) * air_rate_hz;
     const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral);
-    saddle_swing_state_t foot;
-    foot.position_m.x = line.value + swing->offset_m.x * fade;
-    foot.position_m.y = swing->line_y_m + swing->offset_m.y * fade;
-    foot.velocity_m_s.x = line.slope * speed_m_s + swing->offset_m.x * fade_rate_hz;
-    foot.velocity_m_s.y = swing->offset_m.y * fade_rate_hz;
-    swing_height(air, air_rate_hz, swing->clearance_m, &foot);
-    return foot;
+    foot->position_m.x = line.value + swing->offset_m.x * fade;
+    foot->position_m.y = swing->line_y_m + swing->offset_m.y * fade;
+    foot->velocity_m_s.x = line.slope * speed_m_s + swing->offset_m.x * fade_rate_hz;
+    foot->velocity_m_s.y = swing->offset_m.y * fade_rate_hz;
+    swing_height(air, air_rate_hz, swing->clearance_m, foot);
 }

@@ -52,21 +52,34 @@ static saddle_sample_t lateral_at(const saddle_cycle_t *cycle, float x_m)
     return sum(lateral_reference(cycle, x_m), saddle_blend_at(&cycle->lateral, x_m));
 }
 
-static saddle_sample_t vertical_at(const saddle_cycle_t *cycle, const saddle_body_t *body,
-                                   float x_m)
+/* For the cycloid; the other ankles have no height of their own to go on from. */
+static saddle_sample_t vertical_at(const saddle_cycle_t *cycle, const saddle_config_t *config,
+                                   const saddle_body_t *body, float x_m)
 {
+    if (config->ankle != SADDLE_ANKLE_CYCLOID) {
+        const saddle_sample_t none = {0.0f, 0.0f};
+        return none;
+    }
     return sum(vertical_reference(cycle, body, x_m), saddle_blend_at(&cycle->vertical, x_m));
 }
 
 /* Give the running quarter a new shape; what it changes at the CoM fades out until its end. */
-static void reshape(saddle_cycle_t *cycle, const saddle_body_t *body, saddle_quarter_t quarter,
-                    saddle_sample_t lateral, saddle_sample_t vertical)
+static void reshape(saddle_cycle_t *cycle, const saddle_config_t *config,
+                    const saddle_body_t *body, saddle_quarter_t quarter, saddle_sample_t lateral,
+                    saddle_sample_t vertical)
 {
     const float x_m = saddle_position_to_m(cycle->position);
-    const float rest_m = saddle_cycle_before_landing(cycle) ? quarter.length_m - x_m : -x_m;
+    const bool before = saddle_cycle_before_landing(cycle);
+    const float rest_m = before ? quarter.length_m - x_m : -x_m;
     cycle->quarter = quarter;
     cycle->lateral = saddle_blend(lateral, lateral_reference(cycle, x_m), x_m, rest_m);
-    cycle->vertical = saddle_blend(vertical, vertical_reference(cycle, body, x_m), x_m, rest_m);
+    if (config->ankle == SADDLE_ANKLE_CYCLOID) {
+        cycle->vertical = saddle_blend(vertical, vertical_reference(cycle, body, x_m), x_m, rest_m);
+    } else {
+        cycle->transition =
+            saddle_transition(config, body, &cycle->quarter,
+                              before ? cycle->next_heel_strike_rad : cycle->heel_strike_rad);
+    }
 }
 
 /* The foot via point: the next step's length follows from the speed now. */
@@ -75,11 +88,11 @@ static void pass_foot(saddle_cycle_t *cycle, const saddle_config_t *config,
 {
     const saddle_side_t stance = cycle->quarter.stance;
     const saddle_sample_t lateral = lateral_at(cycle, 0.0f);
-    const saddle_sample_t vertical = vertical_at(cycle, body, 0.0f);
+    const saddle_sample_t vertical = vertical_at(cycle, config, body, 0.0f);
     cycle->phase = (uint8_t)((cycle->phase + 1u) % 4u);
     cycle->stride_count += cycle->phase == 0u ? 1u : 0u;
     cycle->quarter_length = saddle_half_step(config, saddle_other_side(stance), speed);
-    reshape(cycle, body,
+    reshape(cycle, config, body,
             saddle_quarter(config, stance, saddle_position_to_m(cycle->quarter_length),
                            saddle_magnitude(cycle->swing.line_y_m), saddle_speed_to_m_s(speed)),
             lateral, vertical);
@@ -114,6 +127,33 @@ static void lift_off(saddle_cycle_t *cycle, const saddle_config_t *config, saddl
     swing->offset_m.y = lifted_m.y - swing->line_y_m;
 }
 
+static float shaping_speed_m_s(const saddle_cycle_t *cycle)
+{
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    return speed_m_s > SPEED_MIN_M_S ? speed_m_s : SPEED_MIN_M_S;
+}
+
+static float length_m(float x_m, float y_m, float z_m)
+{
+    return sqrtf(x_m * x_m + y_m * y_m + z_m * z_m);
+}
+
+/* The angle at which the stance foot leaves the ground, at the saddle via point. */
+static float toe_off_angle_rad(const saddle_cycle_t *cycle, const saddle_config_t *config,
+                               const saddle_body_t *body, float y_m, float z_m)
+{
+    saddle_ankle_state_t ankle;
+    if (config->ankle == SADDLE_ANKLE_CYCLOID) {
+        saddle_ankle_for_leg(config, body, length_m(cycle->quarter.length_m, y_m, z_m), true,
+                             &ankle);
+    } else {
+        saddle_ankle(config, body, &cycle->transition,
+                     cycle->transition.heel_strike_lead_m / shaping_speed_m_s(cycle), true,
+                     &ankle);
+    }
+    return ankle.toe_off_rad;
+}
+
 /* The saddle via point: the swing foot has landed and carries from now on. */
 static void pass_saddle(saddle_cycle_t *cycle, const saddle_config_t *config,
                         const saddle_body_t *body, saddle_fixed_t speed, float heel_strike_rad)
@@ -123,9 +163,9 @@ static void pass_saddle(saddle_cycle_t *cycle, const saddle_config_t *config,
     const float step_y_m = cycle->swing.line_y_m;
     const saddle_vec2_t lifted_m = {-2.0f * length_m, -step_y_m};
     saddle_sample_t lateral = lateral_at(cycle, length_m);
-    const saddle_sample_t vertical = vertical_at(cycle, body, length_m);
+    const saddle_sample_t vertical = vertical_at(cycle, config, body, length_m);
+    cycle->lift_pitch_rad = toe_off_angle_rad(cycle, config, body, lateral.value, vertical.value);
     lateral.value -= step_y_m;
-    cycle->lift_pitch_rad = saddle_cycle_pose(cycle, config, body).stance_pitch_rad;
     cycle->last_step_m.x = -lifted_m.x;
     cycle->last_step_m.y = step_y_m;
 
@@ -136,7 +176,7 @@ static void pass_saddle(saddle_cycle_t *cycle, const saddle_config_t *config,
     cycle->stance_y_m += step_y_m;
     cycle->heel_strike_rad = cycle->next_heel_strike_rad;
     cycle->next_heel_strike_rad = heel_strike_rad;
-    reshape(cycle, body,
+    reshape(cycle, config, body,
             saddle_quarter(config, saddle_other_side(cycle->quarter.stance), length_m,
                            saddle_magnitude(step_y_m), speed_m_s),
             lateral, vertical);
@@ -169,7 +209,7 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_config_t *config,
         cycle->quarter = saddle_quarter(config, stance, cycle->quarter.length_m,
                                         saddle_magnitude(cycle->swing.line_y_m), speed_m_s);
     }
-    reshape(cycle, body, cycle->quarter, lateral, vertical);
+    reshape(cycle, config, body, cycle->quarter, lateral, vertical);
     if (start->under_way) {
         cycle->swing.lift_progress = 0.0f;
         cycle->lateral.length_m = 0.0f;
@@ -284,8 +324,9 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
         !landing_usable(cycle, config, body, step_m, (saddle_vec2_t){x_m, lateral.value})) {
         return false;
     }
-    const saddle_pose_t pose = saddle_cycle_pose(cycle, config, body);
-    const saddle_sample_t vertical = vertical_at(cycle, body, old_x_m);
+    saddle_pose_t pose;
+    saddle_cycle_pose(cycle, config, body, &pose);
+    const saddle_sample_t vertical = vertical_at(cycle, config, body, old_x_m);
     const saddle_vec2_t swing_m = {pose.swing.position_m.x - dx_m, pose.swing.position_m.y - dy_m};
     const float length_m = cycle->quarter.length_m * x_m / old_x_m;
     cycle->position = saddle_position_from_m(x_m);
@@ -294,7 +335,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
     cycle->stance_y_m += dy_m;
     cycle->last_step_m = step_m;
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
-    reshape(cycle, body,
+    reshape(cycle, config, body,
             saddle_quarter(config, stance, length_m, saddle_magnitude(step_m.y), speed_m_s),
             lateral, vertical);
     redirect_swing(cycle, config, swing_m, speed_m_s);
@@ -306,16 +347,14 @@ static void erf_height(const saddle_cycle_t *cycle, const saddle_config_t *confi
                        const saddle_body_t *body, float to_saddle_m, float speed_m_s,
                        saddle_pose_t *pose)
 {
-    const float shaped_m_s = speed_m_s > SPEED_MIN_M_S ? speed_m_s : SPEED_MIN_M_S;
+    const float shaped_m_s = shaping_speed_m_s(cycle);
     const bool before = saddle_cycle_before_landing(cycle);
-    const saddle_transition_t transition =
-        saddle_transition(config, body, &cycle->quarter, shaped_m_s,
-                          before ? cycle->next_heel_strike_rad : cycle->heel_strike_rad);
     const float time_s = (before ? -to_saddle_m : to_saddle_m) / shaped_m_s;
     const saddle_vec2_t offset_m = {pose->com_m.x, pose->com_m.y};
     const saddle_vec2_t velocity_m_s = {pose->com_velocity_m_s.x, pose->com_velocity_m_s.y};
-    pose->ankle = saddle_ankle(config, body, &transition, time_s, before);
-    pose->ankle_limited = transition.toe_off_limited;
+    saddle_ankle(config, body, &cycle->transition,
+                 time_s + cycle->transition.heel_strike_lead_m / shaped_m_s, before, &pose->ankle);
+    pose->ankle_limited = cycle->transition.toe_off_limited;
     pose->ankle.leg_rate_m_s *= speed_m_s / shaped_m_s;
     saddle_com_height(&pose->ankle, offset_m, velocity_m_s, &pose->com_m.z,
                       &pose->com_velocity_m_s.z);
@@ -325,72 +364,67 @@ static void erf_height(const saddle_cycle_t *cycle, const saddle_config_t *confi
 static void cycloid_height(const saddle_cycle_t *cycle, const saddle_config_t *config,
                            const saddle_body_t *body, float speed_m_s, saddle_pose_t *pose)
 {
-    const saddle_sample_t vertical = vertical_at(cycle, body, pose->com_m.x);
+    const saddle_sample_t vertical = vertical_at(cycle, config, body, pose->com_m.x);
     const saddle_vec3_t *com = &pose->com_m;
     pose->com_m.z = vertical.value;
     pose->com_velocity_m_s.z = vertical.slope * speed_m_s;
-    const float leg_m = sqrtf(com->x * com->x + com->y * com->y + com->z * com->z);
-    pose->ankle = saddle_ankle_for_leg(config, body, leg_m, saddle_cycle_before_landing(cycle),
-                                       &pose->ankle_limited);
+    pose->ankle_limited =
+        !saddle_ankle_for_leg(config, body, length_m(com->x, com->y, com->z),
+                              saddle_cycle_before_landing(cycle), &pose->ankle);
 }
 
 /* The foot angle with which the swing foot will land, heel first. */
 static float landing_angle_rad(const saddle_cycle_t *cycle, const saddle_config_t *config,
-                               const saddle_body_t *body, float speed_m_s)
+                               const saddle_body_t *body)
 {
     const saddle_quarter_t *quarter = &cycle->quarter;
+    saddle_ankle_state_t ankle;
     if (config->ankle == SADDLE_ANKLE_CYCLOID) {
-        const float half_m = 0.5f * quarter->width_m;
         const float z_m = saddle_cycloid(body, quarter, SADDLE_HALF_PI).value;
-        const float leg_m =
-            sqrtf(z_m * z_m + quarter->length_m * quarter->length_m + half_m * half_m);
-        bool limited;
-        return saddle_ankle_for_leg(config, body, leg_m, false, &limited).heel_strike_rad;
+        saddle_ankle_for_leg(config, body, length_m(quarter->length_m, 0.5f * quarter->width_m, z_m),
+                             false, &ankle);
+    } else {
+        saddle_ankle(config, body, &cycle->transition,
+                     cycle->transition.heel_strike_lead_m / shaping_speed_m_s(cycle), false,
+                     &ankle);
     }
-    const float shaped_m_s = speed_m_s > SPEED_MIN_M_S ? speed_m_s : SPEED_MIN_M_S;
-    const saddle_transition_t transition = saddle_transition(
-        config, body, quarter, shaped_m_s, cycle->next_heel_strike_rad);
-    return saddle_ankle(config, body, &transition, 0.0f, false).heel_strike_rad;
+    return ankle.heel_strike_rad;
 }
 
 /* The sole turns flat until mid-swing and to the landing angle after it. */
 static float swing_pitch_rad(const saddle_cycle_t *cycle, const saddle_config_t *config,
-                             const saddle_body_t *body, float progress, float speed_m_s)
+                             const saddle_body_t *body, float progress)
 {
     if (!saddle_cycle_before_landing(cycle)) {
         return cycle->lift_pitch_rad * (1.0f - saddle_min_jerk(2.0f * progress));
     }
-    return -landing_angle_rad(cycle, config, body, speed_m_s) *
-           saddle_min_jerk(2.0f * progress - 1.0f);
+    return -landing_angle_rad(cycle, config, body) * saddle_min_jerk(2.0f * progress - 1.0f);
 }
 
-saddle_pose_t saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config_t *config,
-                                const saddle_body_t *body)
+void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config_t *config,
+                       const saddle_body_t *body, saddle_pose_t *pose)
 {
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
     const float x_m = saddle_position_to_m(cycle->position);
-    const float length_m = cycle->quarter.length_m;
-    const saddle_sample_t lateral = lateral_at(cycle, x_m);
-    const float since_via_m = saddle_cycle_before_landing(cycle) ? x_m : length_m + x_m;
-    const float to_saddle_m = saddle_cycle_before_landing(cycle) ? length_m - x_m : length_m + x_m;
-    saddle_pose_t pose;
-    pose.progress = saddle_clamp(since_via_m / length_m, 0.0f, 1.0f);
-    pose.com_m.x = x_m;
-    pose.com_m.y = lateral.value;
-    pose.com_velocity_m_s.x = speed_m_s;
-    pose.com_velocity_m_s.y = lateral.slope * speed_m_s;
+    const float quarter_m = cycle->quarter.length_m;
+    const bool before = saddle_cycle_before_landing(cycle);
+    const saddle_sample_t reference = lateral_reference(cycle, x_m);
+    const saddle_sample_t lateral = sum(reference, saddle_blend_at(&cycle->lateral, x_m));
+    const float since_via_m = before ? x_m : quarter_m + x_m;
+    const float to_saddle_m = before ? quarter_m - x_m : quarter_m + x_m;
+    pose->progress = saddle_clamp(since_via_m / quarter_m, 0.0f, 1.0f);
+    pose->com_m.x = x_m;
+    pose->com_m.y = lateral.value;
+    pose->com_velocity_m_s.x = speed_m_s;
+    pose->com_velocity_m_s.y = lateral.slope * speed_m_s;
     if (config->ankle == SADDLE_ANKLE_CYCLOID) {
-        cycloid_height(cycle, config, body, speed_m_s, &pose);
+        cycloid_height(cycle, config, body, speed_m_s, pose);
     } else {
-        erf_height(cycle, config, body, to_saddle_m, speed_m_s, &pose);
+        erf_height(cycle, config, body, to_saddle_m, speed_m_s, pose);
     }
-    const float swing_progress =
-        0.5f * pose.progress + (saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f);
-    pose.swing = saddle_foot_swing(&cycle->swing, swing_progress, x_m,
-                                   lateral_reference(cycle, x_m), speed_m_s,
-                                   0.5f * speed_m_s / length_m);
-    pose.stance_pitch_rad =
-        saddle_cycle_before_landing(cycle) ? pose.ankle.toe_off_rad : -pose.ankle.heel_strike_rad;
-    pose.swing_pitch_rad = swing_pitch_rad(cycle, config, body, swing_progress, speed_m_s);
-    return pose;
+    const float swing_progress = 0.5f * pose->progress + (before ? 0.5f : 0.0f);
+    saddle_foot_swing(&cycle->swing, swing_progress, x_m, reference, speed_m_s,
+                      0.5f * speed_m_s / quarter_m, &pose->swing);
+    pose->stance_pitch_rad = before ? pose->ankle.toe_off_rad : -pose->ankle.heel_strike_rad;
+    pose->swing_pitch_rad = swing_pitch_rad(cycle, config, body, swing_progress);
 }

@@ -322,7 +322,8 @@ static uint32_t advance_cycle(saddle_planner_t *planner, const saddle_config_t *
         }
     }
     if (arrived) {
-        const saddle_pose_t pose = saddle_cycle_pose(cycle, config, body);
+        saddle_pose_t pose;
+        saddle_cycle_pose(cycle, config, body, &pose);
         after_last_swing(planner, config, body, pose.com_m.y);
     }
     return rest_us;
@@ -541,7 +542,8 @@ static uint32_t write_walking(const saddle_planner_t *planner, const saddle_conf
 {
     const saddle_cycle_t *cycle = &planner->cycle;
     const saddle_side_t stance = cycle->quarter.stance;
-    const saddle_pose_t pose = saddle_cycle_pose(cycle, config, body);
+    saddle_pose_t pose;
+    saddle_cycle_pose(cycle, config, body, &pose);
     const float theta_rad = SADDLE_HALF_PI * ((float)cycle->phase + pose.progress);
     plan->speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
     plan->step_length_m = 2.0f * cycle->quarter.length_m;

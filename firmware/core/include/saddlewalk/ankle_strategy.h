@@ -11,7 +11,7 @@
 typedef struct {
     float heel_strike_rad;  /**< commanded angle of the foot at heel strike */
     float toe_off_rad;      /**< toe-off angle when the heel strikes, [E13] */
-    float heel_strike_lead_s; /**< heel strike to saddle via point, [E12] */
+    float heel_strike_lead_m; /**< way of the CoM from heel strike to saddle via point, [E12] */
     bool toe_off_limited;   /**< the geometry asks for an angle outside [0, pi] */
 } saddle_transition_t;
 
@@ -22,17 +22,16 @@ typedef struct {
     float leg_rate_m_s;                 /**< its time derivative */
 } saddle_ankle_state_t;
 
-/** The transition at the saddle via point of a quarter that is walked at speed_m_s > 0.
- *  heel_strike_rad in [0, pi/2]. */
+/** The transition at the saddle via point of a quarter. heel_strike_rad in [0, pi/2]. */
 saddle_transition_t saddle_transition(const saddle_config_t *config, const saddle_body_t *body,
-                                      const saddle_quarter_t *quarter, float speed_m_s,
-                                      float heel_strike_rad);
+                                      const saddle_quarter_t *quarter, float heel_strike_rad);
 
-/** The ankles time_s after the nearest saddle via point (negative: before it). Before it the
- *  stance leg is in its toe-off part, after it in its heel-strike part: toe_off_acts. */
-saddle_ankle_state_t saddle_ankle(const saddle_config_t *config, const saddle_body_t *body,
-                                  const saddle_transition_t *transition, float time_s,
-                                  bool toe_off_acts);
+/** The ankles since_strike_s after the nearest heel strike (negative: before it). Before the saddle
+ *  via point the stance leg is in its toe-off part, after it in its heel-strike part:
+ *  toe_off_acts. */
+void saddle_ankle(const saddle_config_t *config, const saddle_body_t *body,
+                  const saddle_transition_t *transition, float since_strike_s, bool toe_off_acts,
+                  saddle_ankle_state_t *ankle);
 
 /** [E14] CoM height and its rate over a stance CoP at `offset_m` horizontally from it. */
 void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m,
@@ -42,9 +41,9 @@ void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m
 saddle_sample_t saddle_cycloid(const saddle_body_t *body, const saddle_quarter_t *quarter,
                                float angle_rad);
 
-/** [E25] The ankle angle that gives the stance leg its length: of toe-off or of heel strike. An
- *  angle beyond the geometry is limited, which *limited tells. */
-saddle_ankle_state_t saddle_ankle_for_leg(const saddle_config_t *config, const saddle_body_t *body,
-                                          float leg_length_m, bool toe_off_acts, bool *limited);
+/** [E25] The ankle angle that gives the stance leg its length: of toe-off or of heel strike. False
+ *  if an angle beyond the geometry had to be limited. */
+bool saddle_ankle_for_leg(const saddle_config_t *config, const saddle_body_t *body,
+                          float leg_length_m, bool toe_off_acts, saddle_ankle_state_t *ankle);
 
 #endif

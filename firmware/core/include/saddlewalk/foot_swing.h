@@ -25,7 +25,8 @@ saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle
 
 /** [E9] [E10] The foot at a progress; x_m, lateral as above; speed_m_s that of the CoM and
  *  rate_hz that of the progress. */
-saddle_swing_state_t saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
-                                       saddle_sample_t lateral, float speed_m_s, float rate_hz);
+void saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
+                       saddle_sample_t lateral, float speed_m_s, float rate_hz,
+                       saddle_swing_state_t *foot);
 
 #endif

@@ -29,6 +29,7 @@ typedef struct {
     float lift_pitch_rad;         /**< of the swing foot when it lifted off */
     float heel_strike_rad;        /**< of the last heel strike */
     float next_heel_strike_rad;   /**< of the next one */
+    saddle_transition_t transition; /**< of the nearest saddle via point, erf and rigid only */
     saddle_vec2_t last_step_m;    /**< from the old stance foot to the new one */
     bool last_swing;              /**< the running step ends beside the stance foot: a stop */
 } saddle_cycle_t;
@@ -74,7 +75,7 @@ bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);
 /** Way to the end of the running quarter. */
 float saddle_cycle_way_to_via_point_m(const saddle_cycle_t *cycle);
 
-saddle_pose_t saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config_t *config,
-                                const saddle_body_t *body);
+void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config_t *config,
+                       const saddle_body_t *body, saddle_pose_t *pose);
 
 #endif
