@@ -1,0 +1,65 @@
+"""`saddlewalk reproduce`: the paper's figures and numbers from the C core, on one page."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from saddlewalk.errors import UserError
+
+PAGE = "paper.html"
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser(
+        "reproduce",
+        help="the paper's figures and numbers, from the C core",
+        description="Draw the paper's figures from the C core and compare every number that the "
+        f"paper states. Writes {PAGE}, which has everything in it, and each figure as PNG. Exit "
+        "status 1 if a number is off by more than its tolerance or a finding does not hold.",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("out/paper"),
+        metavar="FOLDER",
+        help="for the page and the figures (default out/paper)",
+    )
+    parser.add_argument(
+        "--gait",
+        type=Path,
+        metavar="FOLDER",
+        help="recorded trials to draw beside the plan: CSV files as `saddlewalk replay` takes, and "
+        "manifest.csv, which says what they are, if there is one",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    from saddlewalk.paper.figures import draw_all
+    from saddlewalk.paper.numbers import findings, numbers, simulate_all
+    from saddlewalk.paper.page import ONLY_ORENDURFF, verdict, write_page
+    from saddlewalk.paper.people import load_trials
+
+    trials = load_trials(args.gait) if args.gait else []
+    simulations = simulate_all()
+    compared, found = numbers(simulations), findings(simulations)
+    pictures = draw_all(simulations, trials)
+    page = write_page(compared, found, simulations, pictures, trials)
+    files = {PAGE: page.encode()} | {each.name: each.png for each in pictures}
+    _write(args.out, files)
+    print(verdict(compared, found))
+    print(f"{len(trials)} recorded trials" if trials else ONLY_ORENDURFF)
+    print(*(f"  {args.out / name}" for name in files), sep="\n")
+    return 0 if all(each.sound for each in compared) and all(each.holds for each in found) else 1
+
+
+def _write(folder: Path, files: dict[str, bytes]) -> None:
+    from saddlewalk.table import whole_file
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in files.items():
+            with whole_file(folder / name, "wb") as file:
+                file.write(content)
+    except OSError as error:
+        raise UserError(f"--out {folder}: {error.strerror}") from error

@@ -1,0 +1,34 @@
+"""What docs/equations.md decides where the paper's print is ambiguous, off or silent."""
+
+import re
+from dataclasses import dataclass
+
+from saddlewalk.errors import UserError
+from saddlewalk.paths import CHECKOUT
+
+PAGE = CHECKOUT / "docs/equations.md"
+MARK = "*reading*"
+_ROW = re.compile(r"\| \[(?P<tag>E\d+)\] \| (?P<equation>.+) \| (?P<label>.+) \| (?P<words>.+) \|")
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One row of the page whose last column has a reading; Markdown, as it stands there."""
+
+    tag: str
+    equation: str
+    label: str  # of the paper
+    words: str
+
+
+def readings() -> list[Reading]:
+    """Raises UserError if the page is not there or has none."""
+    try:
+        text = PAGE.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"{PAGE}: {error.strerror}; the readings of the paper are there") from error
+    rows = (_ROW.fullmatch(line) for line in text.splitlines())
+    found = [Reading(**row.groupdict()) for row in rows if row and MARK in row["words"]]
+    if not found:
+        raise UserError(f"{PAGE}: no row of a table with {MARK}")
+    return found
