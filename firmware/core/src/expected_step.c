@@ -5,6 +5,9 @@
 /* A step that ends beside the stance foot still has a quarter with a shape. */
 #define QUARTER_MIN_M 1.0e-3f
 
+/* Both feet carry for about this long after a heel strike: a sixth of a step. */
+#define TRAILING_S 0.1f
+
 static saddle_com_state_t state_at(const saddle_quarter_t *quarter, float speed_m_s, float x_m)
 {
     const saddle_sample_t lateral =
@@ -12,6 +15,18 @@ static saddle_com_state_t state_at(const saddle_quarter_t *quarter, float speed_
     const saddle_com_state_t state = {
         .com_m = {x_m, lateral.value},
         .velocity_m_s = {speed_m_s, lateral.slope * speed_m_s},
+    };
+    return state;
+}
+
+/* The same where the foot lands: midway between the feet. */
+static saddle_com_state_t state_at_saddle(const saddle_quarter_t *quarter, float speed_m_s)
+{
+    const float outward = quarter->stance == SADDLE_LEFT ? 1.0f : -1.0f;
+    const float slope = -outward * quarter->amplitude_m * SADDLE_HALF_PI / quarter->length_m;
+    const saddle_com_state_t state = {
+        .com_m = {quarter->length_m, -outward * 0.5f * quarter->width_m},
+        .velocity_m_s = {speed_m_s, slope * speed_m_s},
     };
     return state;
 }
@@ -28,7 +43,9 @@ saddle_expectation_t saddle_expect(const saddle_config_t *config, const saddle_s
     const float phase_m = saddle_clamp(x_m, -step->half_behind_m, half_ahead_m);
     saddle_expectation_t expected;
     expected.now = state_at(phase_m < 0.0f ? &behind : &ahead, step->speed_m_s, phase_m);
-    expected.landing = state_at(&ahead, step->speed_m_s, half_ahead_m);
+    expected.landing = half_ahead_m > QUARTER_MIN_M
+                           ? state_at_saddle(&ahead, step->speed_m_s)
+                           : state_at(&ahead, step->speed_m_s, half_ahead_m);
     expected.landing_m = step->landing_m;
     expected.time_s =
         saddle_clamp((half_ahead_m - phase_m) / step->speed_m_s, 0.0f, config->foresight_s);
@@ -36,13 +53,23 @@ saddle_expectation_t saddle_expect(const saddle_config_t *config, const saddle_s
     return expected;
 }
 
-saddle_com_state_t saddle_grown(const saddle_body_t *body, const saddle_com_state_t *deviation,
-                                float time_s)
+saddle_growth_t saddle_growth(const saddle_body_t *body, float time_s, bool trailing)
 {
     const float w = body->natural_frequency_rad_s;
-    const float growth = saddle_exp(w * time_s);
-    const float cosh_wt = 0.5f * (growth + 1.0f / growth);
-    const float sinh_wt = 0.5f * (growth - 1.0f / growth);
+    const float carried_s = time_s < TRAILING_S ? time_s : TRAILING_S;
+    saddle_growth_t growth;
+    growth.factor = saddle_exp(w * time_s);
+    growth.trailing = trailing ? growth.factor - saddle_exp(w * (time_s - carried_s)) : 0.0f;
+    return growth;
+}
+
+saddle_com_state_t saddle_grown(const saddle_body_t *body, const saddle_com_state_t *deviation,
+                                const saddle_growth_t *growth)
+{
+    const float w = body->natural_frequency_rad_s;
+    const float inverse = 1.0f / growth->factor;
+    const float cosh_wt = 0.5f * (growth->factor + inverse);
+    const float sinh_wt = 0.5f * (growth->factor - inverse);
     const saddle_vec2_t place_m = deviation->com_m;
     const saddle_vec2_t velocity_m_s = deviation->velocity_m_s;
     const saddle_com_state_t grown = {

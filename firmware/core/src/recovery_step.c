@@ -2,9 +2,6 @@
 #include <saddlewalk/saddle_math.h>
 #include <saddlewalk/saddle_space.h>
 
-/* Both feet carry for about this long after a heel strike: a sixth of a step. */
-#define TRAILING_S 0.1f
-
 /* Where on an axis the foot may land; empty when max < min. */
 typedef struct {
     float min_m, max_m;
@@ -78,16 +75,12 @@ saddle_recovery_t saddle_recovery_step(const saddle_config_t *config, const sadd
     return recovery;
 }
 
-float saddle_least_deviation_m(const saddle_body_t *body, float deviation_m,
-                               saddle_cop_shift_t shift, float time_s)
+float saddle_least_deviation_m(float deviation_m, saddle_cop_shift_t shift,
+                               const saddle_growth_t *growth)
 {
-    const float w = body->natural_frequency_rad_s;
-    const float growth = saddle_exp(w * time_s);
-    const float carried_s = time_s < TRAILING_S ? time_s : TRAILING_S;
-    const float trailing_m =
-        saddle_magnitude(shift.trailing_m) * (growth - saddle_exp(w * (time_s - carried_s)));
-    const float foot_m = shift.foot_m * (growth - 1.0f);
-    const float grown_m = deviation_m * growth;
+    const float grown_m = deviation_m * growth->factor;
+    const float foot_m = shift.foot_m * (growth->factor - 1.0f);
+    const float trailing_m = saddle_magnitude(shift.trailing_m) * growth->trailing;
     const bool towards_trailing = deviation_m * shift.trailing_m > 0.0f;
     const float mended_m = towards_trailing ? foot_m + trailing_m : foot_m;
     return grown_m - saddle_clamp(grown_m, -mended_m, mended_m);

@@ -192,15 +192,14 @@ static void compare_state(const saddle_config_t *config, const saddle_body_t *bo
     verdict->xcom_deviation_m = less(xcom_of(body, &seen->com), xcom_of(body, planned));
 }
 
-/* trailing_m: the foot that still carries beside the stance foot, from there. */
-static saddle_vec2_t least_deviation_m(const saddle_config_t *config, const saddle_body_t *body,
-                                       saddle_vec2_t deviation_m, saddle_vec2_t trailing_m,
-                                       float time_s)
+/* trailing_m: the other foot, from the stance foot. */
+static saddle_vec2_t least_deviation_m(const saddle_config_t *config, saddle_vec2_t deviation_m,
+                                       saddle_vec2_t trailing_m, const saddle_growth_t *growth)
 {
     const saddle_cop_shift_t ap = {config->cop_shift_ap_m, trailing_m.x};
     const saddle_cop_shift_t ml = {config->cop_shift_ml_m, trailing_m.y};
-    const saddle_vec2_t least_m = {saddle_least_deviation_m(body, deviation_m.x, ap, time_s),
-                                   saddle_least_deviation_m(body, deviation_m.y, ml, time_s)};
+    const saddle_vec2_t least_m = {saddle_least_deviation_m(deviation_m.x, ap, growth),
+                                   saddle_least_deviation_m(deviation_m.y, ml, growth)};
     return least_m;
 }
 
@@ -219,7 +218,7 @@ static void compare_standing(const saddle_config_t *config, const saddle_body_t 
     verdict->ebos_com_m = saddle_bos_margin_m(&seen.bos, seen.com.com_m);
     verdict->ebos_xcom_m = saddle_bos_margin_m(&seen.bos, xcom_of(body, &seen.com));
 
-    const saddle_vec2_t zero_m = {0.0f, 0.0f};
+    const saddle_growth_t growth = saddle_growth(body, config->foresight_s, false);
     const saddle_vec2_t deviation_m = verdict->xcom_deviation_m;
     const saddle_side_t foot = deviation_m.y > 0.0f ? SADDLE_LEFT : SADDLE_RIGHT;
     const saddle_vec2_t stance_m = seen.cop_m[saddle_other_side(foot)];
@@ -227,7 +226,7 @@ static void compare_standing(const saddle_config_t *config, const saddle_body_t 
         .stance = saddle_other_side(foot),
         .landing_m = less(seen.cop_m[foot], stance_m),
         .xcom_m = less(xcom_of(body, planned), stance_m),
-        .departure_m = least_deviation_m(config, body, deviation_m, zero_m, config->foresight_s),
+        .departure_m = least_deviation_m(config, deviation_m, stance_m, &growth),
         .step_time_s = config->foresight_s,
     };
     verdict->recovery = saddle_recovery_step(config, body, &to_catch);
@@ -277,7 +276,10 @@ static void compare_walking(const saddle_config_t *config, const saddle_body_t *
     const saddle_com_state_t deviation = {
         less(com_m, expected->now.com_m),
         less(seen.com.velocity_m_s, expected->now.velocity_m_s)};
-    const saddle_com_state_t grown = saddle_grown(body, &deviation, expected->time_s);
+    const saddle_side_t foot = saddle_other_side(stance);
+    const saddle_growth_t growth =
+        saddle_growth(body, expected->time_s, measurement->foot[foot].contact);
+    const saddle_com_state_t grown = saddle_grown(body, &deviation, &growth);
     const saddle_vec2_t landed_m[2] = {zero_m, expected->landing_m};
     const saddle_bos_t ebos = saddle_bos(landed_m, config->cop_range_m, config->bos_factor);
     const saddle_vec2_t planned_xcom_m = xcom_of(body, &expected->landing);
@@ -285,14 +287,12 @@ static void compare_walking(const saddle_config_t *config, const saddle_body_t *
         saddle_bos_margin_m(&ebos, plus(expected->landing.com_m, grown.com_m));
     verdict->ebos_xcom_m = saddle_bos_margin_m(&ebos, plus(planned_xcom_m, xcom_of(body, &grown)));
 
-    const saddle_side_t foot = saddle_other_side(stance);
-    const saddle_vec2_t trailing_m = measurement->foot[foot].contact ? seen.cop_m[foot] : zero_m;
     const saddle_catch_t to_catch = {
         .stance = stance,
         .landing_m = expected->landing_m,
         .xcom_m = planned_xcom_m,
-        .departure_m = least_deviation_m(config, body, verdict->xcom_deviation_m, trailing_m,
-                                         expected->time_s),
+        .departure_m = least_deviation_m(config, verdict->xcom_deviation_m, seen.cop_m[foot],
+                                         &growth),
         .step_time_s = expected->step_time_s,
     };
     verdict->recovery = saddle_recovery_step(config, body, &to_catch);

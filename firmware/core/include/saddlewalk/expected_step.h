@@ -7,6 +7,7 @@
 #include <saddlewalk/energy.h>
 #include <saddlewalk/gait_model.h>
 #include <saddlewalk/saddle_types.h>
+#include <stdbool.h>
 
 /** A step of a steady walk. */
 typedef struct {
@@ -30,8 +31,18 @@ typedef struct {
 saddle_expectation_t saddle_expect(const saddle_config_t *config, const saddle_step_t *step,
                                    float x_m);
 
-/** [E29] A deviation after time_s of free fall about the CoP. */
+/** How a deviation of the XCoM grows in a time, [E29] [E30]. */
+typedef struct {
+    float factor;   /**< exp(w_n t) */
+    float trailing; /**< what a CoP held at the trailing foot, as long as that carries, takes off:
+                         its distance times this; 0 once the foot has lifted off */
+} saddle_growth_t;
+
+/** [E29] trailing: the other foot still carries, for about 0.1 s more. */
+saddle_growth_t saddle_growth(const saddle_body_t *body, float time_s, bool trailing);
+
+/** [E29] A deviation after free fall about the CoP. */
 saddle_com_state_t saddle_grown(const saddle_body_t *body, const saddle_com_state_t *deviation,
-                                float time_s);
+                                const saddle_growth_t *growth);
 
 #endif

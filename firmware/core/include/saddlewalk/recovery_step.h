@@ -3,6 +3,7 @@
 #define SADDLEWALK_RECOVERY_STEP_H
 
 #include <saddlewalk/config.h>
+#include <saddlewalk/expected_step.h>
 #include <saddlewalk/gait_model.h>
 #include <saddlewalk/saddle_types.h>
 #include <stdbool.h>
@@ -32,11 +33,11 @@ saddle_recovery_t saddle_recovery_step(const saddle_config_t *config, const sadd
 /** How far the wearer can move the CoP from where it is planned, along one axis. */
 typedef struct {
     float foot_m;     /**< either way, within the stance foot, all the time */
-    float trailing_m; /**< signed: to the trailing foot, while it is still on the ground; else 0 */
+    float trailing_m; /**< signed: to the trailing foot, while that carries */
 } saddle_cop_shift_t;
 
-/** [E30] The least that a deviation of the XCoM along one axis can have become after time_s. */
-float saddle_least_deviation_m(const saddle_body_t *body, float deviation_m,
-                               saddle_cop_shift_t shift, float time_s);
+/** [E30] The least that a deviation of the XCoM along one axis can have grown to. */
+float saddle_least_deviation_m(float deviation_m, saddle_cop_shift_t shift,
+                               const saddle_growth_t *growth);
 
 #endif
