@@ -4,7 +4,6 @@
 int main(void)
 {
     static saddle_context_t walker;
-    static const char *const levels[] = {"unknown", "stable", "caution", "unstable"};
     const saddle_config_t config = saddle_config_default(1.79f, 63.3f); /* height m, mass kg */
     saddle_input_t input = {.command = {SADDLE_COMMAND_WALK, 1.2f, 0.17f}}; /* m/s, rad */
     if (saddle_init(&walker, &config) != SADDLE_OK) {
@@ -18,9 +17,9 @@ int main(void)
             input.measurement.foot[side].contact = true;
         }
         saddle_tick(&walker, &input, &output);
-        printf("CoM %6.3f %6.3f %6.3f m   margin of stability %.3f m   %s\n",
+        printf("CoM %6.3f %6.3f %6.3f m   margin of stability %.3f m   level %u\n",
                output.plan.com_m.x, output.plan.com_m.y, output.plan.com_m.z,
-               output.scores.mos_com_m, levels[output.verdict.level]);
+               output.scores.mos_com_m, (unsigned)output.verdict.level);
     }
     return 0;
 }
