@@ -9,6 +9,9 @@ from saddlewalk.core import describe_bad_field
 from saddlewalk.errors import UserError
 from saddlewalk.paths import built
 from saddlewalk.ticks import MESSAGES
+from saddlewalk.wire import identifier
+
+_OF_PROCESS = {identifier(name) for name in ("TIMING", "RECEIVED", "INPUTS")}
 
 
 @functools.cache
@@ -69,9 +72,12 @@ class Firmware:
         return encoded
 
     def frames(self, counter: int, late_ticks: int, rejected_frames: int) -> dict[int, bytes]:
-        """The last output as the host sends it on CAN: identifier -> data."""
+        """The last output as the host sends it on CAN: identifier -> data.
+
+        Without the messages that tell only of the host process, which no input decides.
+        """
         frames = ffi().new("saddle_frame_t[]", len(MESSAGES))
         health = ffi().new("saddle_wire_health_t *")
         health.late_ticks, health.rejected_frames = late_ticks, rejected_frames
         library().saddle_wire_encode_output(self.output, health, counter, frames)
-        return {frame.id: bytes(frame.data) for frame in frames}
+        return {frame.id: bytes(frame.data) for frame in frames if frame.id not in _OF_PROCESS}

@@ -40,6 +40,17 @@ NO_PLAN = {
 }
 
 
+PROCESS = {
+    "TIMING": dict.fromkeys(("PERIOD", "LATENCY", "LATENCY_MAX"), 0.0),
+    "RECEIVED": dict.fromkeys(
+        ("ACCEPTED", "MALFORMED", "BAD_CRC", "BAD_VERSION", "BAD_COUNTER"), 0
+    ),
+    "INPUTS": dict.fromkeys(
+        ("COMMAND_SOURCE", "COMMAND_AGE", "COM_AGE", "LEFT_AGE", "RIGHT_AGE"), 0
+    ),
+}
+
+
 class OfflineFirmware:
     """A bus with the core behind it: a lockstep firmware without process or network."""
 
@@ -118,6 +129,7 @@ class OfflineFirmware:
                 "GRAVITY_Y": valid(scores.gravity_n.y, core.SADDLE_VALID_GRAVITY),
                 "FAULTS": output.faults,
             },
+            **PROCESS,
             "HEALTH": {"STATUS": 0, "LIMITS": 0, "LATE_TICKS": 0, "REJECTED_FRAMES": 0},
         }
 

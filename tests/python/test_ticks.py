@@ -55,16 +55,31 @@ def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
             "XCOM_DEVIATION_Y": 0.0,
         },
         "RECOVERY": {"FOUND": 1, "STOPS": 0, "FOOT": 1, "X": 0.7, "Y": -0.1, "MARGIN": 0.2},
+        "TIMING": {"PERIOD": 0.08, "LATENCY": 1e-4, "LATENCY_MAX": 3e-4},
+        "RECEIVED": {
+            "MALFORMED": 0,
+            "BAD_CRC": 0,
+            "BAD_VERSION": 0,
+            "BAD_COUNTER": 0,
+            "ACCEPTED": 40,
+        },
+        "INPUTS": {
+            "COMMAND_SOURCE": 1,
+            "COMMAND_AGE": 0,
+            "COM_AGE": 0,
+            "LEFT_AGE": 0,
+            "RIGHT_AGE": 0,
+        },
         "HEALTH": {"STATUS": 0, "LIMITS": 0, "LATE_TICKS": 0, "REJECTED_FRAMES": 0},
     }
     return [sender.frame(name, **signals) for name, signals in values.items()]
 
 
-@pytest.mark.parametrize("lost", range(18))
+@pytest.mark.parametrize("lost", range(21))
 def test_a_tick_with_a_lost_frame_is_not_used(lost):
     sender, reader = Sender(), TickReader()
     first, second, third = (tick_frames(sender) for _ in range(3))
-    assert [reader.feed(frame) is not None for frame in first] == [False] * 17 + [True]
+    assert [reader.feed(frame) is not None for frame in first] == [False] * 20 + [True]
     assert not any(reader.feed(frame) for frame in second[:lost] + second[lost + 1 :])
     heard = [reader.feed(frame) for frame in third]
     assert plan_of(heard[-1]).speed_m_s == pytest.approx(1.2) and not any(heard[:-1])
@@ -104,6 +119,6 @@ def test_a_tick_that_waits_is_taken_even_when_time_is_up():
             return next(frames, None)
 
     bus, reader = Waiting(), TickReader()
-    assert [next_tick(bus, reader.feed, -1.0) is not None for _ in range(18)] == [False] * 17 + [
+    assert [next_tick(bus, reader.feed, -1.0) is not None for _ in range(21)] == [False] * 20 + [
         True
     ]

@@ -92,6 +92,7 @@ static void test_another_wire_version_is_refused(void)
     frame.data[0] = saddle_wire_crc(covered, sizeof covered);
     TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE, accept(&frame));
     TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_version);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_WIRE_VERSION + 1, receiver.other_version);
 }
 
 static void expect_counters(const char *counters, const char *accepted)
@@ -155,7 +156,7 @@ static void test_events_and_pitch_bytes(void)
 {
     const uint8_t events[7] = {0x37, 0xFA, 0x00, 0xFF, 0x7F, 0x00, 0x80};
     const uint8_t pitch[7] = {0x07, 0x0C, 0xFE, 0xDC, 0x05, 0x14, 0x00};
-    const saddle_wire_health_t health = {0, 0};
+    const saddle_wire_health_t health = {.late_ticks = 0};
     const saddle_output_t output = {.plan = {.valid = true,
                                              .mode = SADDLE_MODE_STOPPING,
                                              .time_to_via_point_s = 0.25f,
@@ -175,7 +176,7 @@ static void test_events_and_pitch_bytes(void)
 static void test_a_plan_that_is_not_valid_has_no_numbers(void)
 {
     const uint8_t nothing[7] = {0x00, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80};
-    const saddle_wire_health_t health = {0, 0};
+    const saddle_wire_health_t health = {.late_ticks = 0};
     const saddle_output_t output = {.plan = {.valid = false}};
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_wire_encode_output(&output, &health, 0, frames);
@@ -203,7 +204,7 @@ static saddle_output_t judged(void)
 
 static void assert_judgement(const saddle_output_t *output, const uint8_t expected[4][7])
 {
-    const saddle_wire_health_t health = {0, 0};
+    const saddle_wire_health_t health = {.late_ticks = 0};
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_wire_encode_output(output, &health, 7, frames);
     for (size_t i = 0; i < 4u; ++i) {
@@ -247,6 +248,36 @@ static void test_what_was_not_compared_has_no_numbers(void)
     assert_judgement(&output, no_step_no_stop);
 }
 
+/** Written out by hand from the DBC: 80.25 ms, 0.13 ms and the end of the range; counts that saturate
+ *  beside one that wraps; LCM, then 80, 7, 4095 and 0 ms in 12 bits each; status and limits 0. */
+static void test_process_bytes(void)
+{
+    const uint8_t expected[4][7] = {
+        {0x07, 0x59, 0x1F, 0x0D, 0x00, 0xFF, 0x7F},
+        {0x07, 0x03, 0xFF, 0x00, 0x02, 0x05, 0x00},
+        {0x27, 0x50, 0x70, 0x00, 0xFF, 0x0F, 0x00},
+        {0x07, 0x00, SADDLE_WIRE_VERSION, 0x04, 0x00, 0xFF, 0xFF}};
+    const saddle_wire_health_t health = {
+        .late_ticks = 4,
+        .rejected_frames = 70000,
+        .period_us = 80250,
+        .latency_us = 130,
+        .latency_max_us = 400000,
+        .command_source = 2,
+        .input_age_us = {80000, 7999, SADDLE_AGE_NEVER_US, 400},
+        .accepted = 65536 + 5,
+        .malformed = 3,
+        .bad_crc = 256,
+        .bad_counter = 2};
+    const saddle_output_t output = {.status = SADDLE_OK};
+    saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
+    saddle_wire_encode_output(&output, &health, 7, frames);
+    for (size_t i = 0; i < 4u; ++i) {
+        TEST_ASSERT_EQUAL_HEX16(0x13Du + i, frames[17u + i].id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[17u + i].data[1], 7);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -263,5 +294,6 @@ int main(void)
     RUN_TEST(test_a_plan_that_is_not_valid_has_no_numbers);
     RUN_TEST(test_judgement_bytes);
     RUN_TEST(test_what_was_not_compared_has_no_numbers);
+    RUN_TEST(test_process_bytes);
     return UNITY_END();
 }

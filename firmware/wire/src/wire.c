@@ -7,6 +7,7 @@
 #define NOT_AVAILABLE INT16_MIN
 #define COUNTER_MASK 0x0Fu
 #define COUNTER_STEP_MAX 4u
+#define AGE_MAX_MS 4095u
 
 /** Raw value of a number: the scale is the generated codec's, and the ends of the range follow. */
 #define RAW(signal, valid, value)                                                                \
@@ -29,6 +30,22 @@ static float limited(float value, float limit)
 static uint16_t limited_u16(uint32_t value)
 {
     return value > UINT16_MAX ? (uint16_t)UINT16_MAX : (uint16_t)value;
+}
+
+static uint8_t limited_u8(uint32_t value)
+{
+    return value > UINT8_MAX ? (uint8_t)UINT8_MAX : (uint8_t)value;
+}
+
+static float seconds(uint32_t us)
+{
+    return (float)us * 1.0e-6f;
+}
+
+/** 12 bits of milliseconds; the largest: as old, older, or never. */
+static uint16_t age_ms(uint32_t us)
+{
+    return us / 1000u < AGE_MAX_MS ? (uint16_t)(us / 1000u) : (uint16_t)AGE_MAX_MS;
 }
 
 uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length)
@@ -97,14 +114,19 @@ static saddle_wire_message_t message_of(uint32_t id)
     }
 }
 
-static bool speaks_our_version(saddle_wire_message_t message, const uint8_t *data)
+static bool speaks_our_version(saddle_wire_receiver_t *receiver, saddle_wire_message_t message,
+                               const uint8_t *data)
 {
     if (message != SADDLE_WIRE_COMMAND) {
         return true;
     }
     struct saddle_can_command_t command;
     (void)saddle_can_command_unpack(&command, data, SADDLE_WIRE_LENGTH);
-    return command.wire_version == SADDLE_WIRE_VERSION;
+    if (command.wire_version != SADDLE_WIRE_VERSION) {
+        receiver->other_version = command.wire_version;
+        return false;
+    }
+    return true;
 }
 
 saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint32_t id,
@@ -116,7 +138,7 @@ saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint3
         count = &receiver->malformed;
     } else if (data[0] != frame_crc(id, data)) {
         count = &receiver->bad_crc;
-    } else if (!speaks_our_version(message, data)) {
+    } else if (!speaks_our_version(receiver, message, data)) {
         count = &receiver->bad_version;
     } else if (!in_step(&receiver->alive[message], saddle_wire_counter(data))) {
         count = &receiver->bad_counter;
@@ -306,6 +328,35 @@ static void encode_verdict(const saddle_verdict_t *verdict, uint8_t counter,
            .margin = RAW(recovery_margin, compared, recovery->margin_m));
 }
 
+static void encode_process(const saddle_wire_health_t *health, uint8_t counter,
+                           saddle_frame_t *frames)
+{
+    const uint32_t *const age_us = health->input_age_us;
+    ENCODE(&frames[0], timing, TIMING, .counter = counter,
+           .period = RAW(timing_period, true, seconds(health->period_us)),
+           .latency = RAW(timing_latency, true, seconds(health->latency_us)),
+           .latency_max = RAW(timing_latency_max, true, seconds(health->latency_max_us)));
+    ENCODE(&frames[1], received, RECEIVED, .counter = counter,
+           .malformed = limited_u8(health->malformed), .bad_crc = limited_u8(health->bad_crc),
+           .bad_version = limited_u8(health->bad_version),
+           .bad_counter = limited_u8(health->bad_counter), .accepted = (uint16_t)health->accepted);
+    ENCODE(&frames[2], inputs, INPUTS, .counter = counter,
+           .command_source = health->command_source & 3u,
+           .command_age = age_ms(age_us[SADDLE_WIRE_COMMAND]),
+           .com_age = age_ms(age_us[SADDLE_WIRE_MEASURED_COM]),
+           .left_age = age_ms(age_us[SADDLE_WIRE_MEASURED_LEFT]),
+           .right_age = age_ms(age_us[SADDLE_WIRE_MEASURED_RIGHT]));
+}
+
+static void encode_health(const saddle_output_t *output, const saddle_wire_health_t *health,
+                          uint8_t counter, saddle_frame_t *frame)
+{
+    ENCODE(frame, health, HEALTH, .counter = counter, .status = (uint8_t)output->status,
+           .limits = (uint8_t)output->limits, .wire_version = SADDLE_WIRE_VERSION,
+           .late_ticks = limited_u16(health->late_ticks),
+           .rejected_frames = limited_u16(health->rejected_frames));
+}
+
 void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_health_t *health,
                                uint8_t counter, saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES])
 {
@@ -317,10 +368,8 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
     encode_scores(&output->scores, output->faults, counter, &frames[10]);
     encode_foresight(&output->scores, &output->verdict, counter, &frames[13]);
     encode_verdict(&output->verdict, counter, &frames[15]);
-    ENCODE(&frames[17], health, HEALTH, .counter = counter, .status = (uint8_t)output->status,
-           .limits = (uint8_t)output->limits, .wire_version = SADDLE_WIRE_VERSION,
-           .late_ticks = limited_u16(health->late_ticks),
-           .rejected_frames = limited_u16(health->rejected_frames));
+    encode_process(health, counter, &frames[17]);
+    encode_health(output, health, counter, &frames[20]);
 }
 
 void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,

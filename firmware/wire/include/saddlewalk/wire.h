@@ -32,8 +32,9 @@
 /** Every frame is a classic CAN data frame of this many bytes with an 11-bit identifier. */
 #define SADDLE_WIRE_LENGTH 8u
 
-/** Frames of one output: the plan (10), the scores (5), the verdict (2), and HEALTH as the last. */
-#define SADDLE_WIRE_OUTPUT_FRAMES 18u
+/** Frames of one output: the plan (10), the scores (5), the verdict (2), the process (3), and
+ *  HEALTH as the last. */
+#define SADDLE_WIRE_OUTPUT_FRAMES 21u
 
 /** Frames of one measurement: CoM, left foot, right foot. */
 #define SADDLE_WIRE_MEASURED_FRAMES 3u
@@ -42,12 +43,6 @@ typedef struct {
     uint16_t id;
     uint8_t data[SADDLE_WIRE_LENGTH];
 } saddle_frame_t;
-
-/** What HEALTH says beside the output. Both saturate at 65535 on the wire. */
-typedef struct {
-    uint32_t late_ticks;
-    uint32_t rejected_frames; /**< and commands: all that came and was not used */
-} saddle_wire_health_t;
 
 /** The messages that the firmware receives. */
 typedef enum {
@@ -58,6 +53,19 @@ typedef enum {
     SADDLE_WIRE_MEASURED_RIGHT = 3,
     SADDLE_WIRE_MESSAGE_COUNT
 } saddle_wire_message_t;
+
+/** How the process around the core fares: TIMING, RECEIVED, INPUTS and HEALTH. What is too large
+ *  for its signal is sent as the end of the range. */
+typedef struct {
+    uint32_t late_ticks;
+    uint32_t rejected_frames; /**< and commands: all that came and was not used */
+    uint32_t period_us;       /**< between the last two ticks */
+    uint32_t latency_us;      /**< of this tick, behind its time */
+    uint32_t latency_max_us;  /**< of all */
+    uint8_t command_source;   /**< has authority: 0 none, 1 CAN, 2 LCM */
+    uint32_t input_age_us[SADDLE_WIRE_MESSAGE_COUNT];
+    uint32_t accepted, malformed, bad_crc, bad_version, bad_counter; /**< the receiver's */
+} saddle_wire_health_t;
 
 /** Alive counter of one received message. */
 typedef struct {
@@ -74,6 +82,7 @@ typedef struct {
     uint32_t bad_crc;
     uint32_t bad_version; /**< COMMAND of another wire version */
     uint32_t bad_counter; /**< repeated, or out of step */
+    uint8_t other_version; /**< of the last one with a bad version */
 } saddle_wire_receiver_t;
 
 /** CRC-8 SAE J1850: polynomial 0x1D, start 0xFF, final inversion. "123456789" gives 0x4B. */
