@@ -1,66 +1,52 @@
 #include "bus_socketcan.h"
 
+#include "stamped.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/can.h>
+#include <linux/can/error.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
-static bool fail(saddle_bus_t *bus, const char *interface_name, const char *reason)
+/** Room for what comes while a tick runs, or the process is stopped for a moment. */
+#define RECEIVE_BUFFER_BYTES (1 << 20)
+
+static bool fail(saddle_bus_t *bus, const char *reason)
 {
-    if (bus->receive_fd >= 0) {
-        close(bus->receive_fd);
-    }
-    snprintf(bus->description, sizeof bus->description, "CAN interface %.16s %s", interface_name,
+    snprintf(bus->description, sizeof bus->description, "CAN interface %.16s %s", bus->channel,
              reason);
     return false;
 }
 
-/** Its index, 0 if there is no such interface, or it is not up. */
-static unsigned index_if_up(int fd, const char *interface_name)
+static bool set_up(int fd, const char *interface_name)
 {
-    struct ifreq request = {0};
-    if (strlen(interface_name) >= sizeof request.ifr_name) {
-        return 0;
-    }
-    memcpy(request.ifr_name, interface_name, strlen(interface_name));
-    if (ioctl(fd, SIOCGIFFLAGS, &request) != 0 || (request.ifr_flags & IFF_UP) == 0) {
-        return 0;
-    }
-    return if_nametoindex(interface_name);
+    const int buffer = RECEIVE_BUFFER_BYTES, yes = 1;
+    const can_err_mask_t errors = CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
+    const struct sockaddr_can address = {.can_family = AF_CAN,
+                                         .can_ifindex = (int)if_nametoindex(interface_name)};
+    return setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer) == 0 &&
+           setsockopt(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) == 0 &&
+           setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &yes, sizeof yes) == 0 &&
+           saddle_stamp(fd) && fcntl(fd, F_SETFL, O_NONBLOCK) == 0 &&
+           bind(fd, (const struct sockaddr *)&address, sizeof address) == 0;
 }
 
-/** Ours are classic frames; others' CAN FD frames are asked for so that they are counted. */
-static bool hear_fd_frames(int fd)
+bool saddle_bus_socketcan_open(saddle_bus_t *bus)
 {
-    const int yes = 1;
-    return setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &yes, sizeof yes) == 0;
-}
-
-bool saddle_bus_socketcan_open(saddle_bus_t *bus, const char *interface_name)
-{
-    bus->kind = SADDLE_BUS_SOCKETCAN;
-    bus->receive_fd = socket(PF_CAN, SOCK_RAW, CAN_RAW);
-    bus->send_fd = bus->receive_fd;
-    if (bus->receive_fd < 0) {
-        return fail(bus, interface_name, "cannot be used: this kernel has no CAN");
+    const int fd = bus->receive_fd = bus->send_fd = socket(PF_CAN, SOCK_RAW, CAN_RAW);
+    if (fd < 0) {
+        return fail(bus, "cannot be used: this kernel has no CAN");
     }
-    struct sockaddr_can address = {.can_family = AF_CAN};
-    address.can_ifindex = (int)index_if_up(bus->receive_fd, interface_name);
-    if (address.can_ifindex == 0) {
-        return fail(bus, interface_name, "is not there or not up");
+    if (!saddle_interface_is_up(bus->channel)) {
+        return fail(bus, "is not there or not up");
     }
-    if (!hear_fd_frames(bus->receive_fd) ||
-        bind(bus->receive_fd, (const struct sockaddr *)&address, sizeof address) != 0 ||
-        fcntl(bus->receive_fd, F_SETFL, O_NONBLOCK) != 0) {
-        return fail(bus, interface_name, strerror(errno));
+    if (!set_up(fd, bus->channel)) {
+        return fail(bus, strerror(errno));
     }
-    snprintf(bus->description, sizeof bus->description, "SocketCAN %.16s", interface_name);
+    snprintf(bus->description, sizeof bus->description, "SocketCAN %.16s", bus->channel);
     return true;
 }
 
@@ -72,17 +58,21 @@ bool saddle_bus_socketcan_send(const saddle_bus_t *bus, const saddle_bus_frame_t
 }
 
 /** The kernel marks extended, remote and error frames in bits of the identifier above the 11. A
- *  CAN FD frame tells itself by its size. */
+ *  CAN FD frame, which is longer, is none that anything here sends: junk, so that it is counted. */
 saddle_bus_received_t saddle_bus_socketcan_receive(const saddle_bus_t *bus,
                                                    saddle_bus_frame_t *frame)
 {
-    struct canfd_frame raw;
-    const ssize_t size = read(bus->receive_fd, &raw, sizeof raw);
+    struct canfd_frame raw; /* begins as a can_frame */
+    const ssize_t size = saddle_receive_stamped(bus->receive_fd, &raw, sizeof raw, NULL, 0,
+                                                &frame->waited_us);
     if (size < 0) {
-        return SADDLE_BUS_EMPTY;
+        return SADDLE_BUS_FAILED;
     }
-    if (size != CAN_MTU || raw.len > sizeof frame->data) {
+    if (size != (ssize_t)CAN_MTU || raw.len > sizeof frame->data) {
         return SADDLE_BUS_JUNK;
+    }
+    if ((raw.can_id & CAN_ERR_FLAG) != 0) {
+        return (raw.can_id & CAN_ERR_RESTARTED) != 0 ? SADDLE_BUS_RESTARTED : SADDLE_BUS_OFF;
     }
     frame->id = raw.can_id;
     frame->length = raw.len;

@@ -1,8 +1,14 @@
 #include "lcm_port.h"
 #include "lcm_messages.h"
 
+#include "clock.h"
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <saddlewalk_command_t.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 /** LCM explains at length on standard error why it cannot start; the caller does so in one line. */
@@ -18,9 +24,47 @@ static lcm_t *create_silently(const char *url)
     return lcm;
 }
 
+/** Whether the kernel routes a multicast group to this machine itself. Nothing is sent. */
+static bool is_routed_to_loopback(const char *group, uint16_t port)
+{
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons(port)};
+    socklen_t size = sizeof address;
+    const int fd = socket(AF_INET, SOCK_DGRAM, 0);
+    const bool known = inet_pton(AF_INET, group, &address.sin_addr) == 1 &&
+                       connect(fd, (const struct sockaddr *)&address, size) == 0 &&
+                       getsockname(fd, (struct sockaddr *)&address, &size) == 0;
+    close(fd);
+    return known && ntohl(address.sin_addr.s_addr) >> 24 == IN_LOOPBACKNET;
+}
+
+/** With the default URL nothing leaves the machine, but a group that is routed to a network is
+ *  heard from there too: LCM has no option for the interface. */
+static const char *reach_of(const char *url)
+{
+    static const char udpm[] = "udpm://";
+    char group[INET_ADDRSTRLEN];
+    unsigned short port = 7667;
+    if (strncmp(url, udpm, sizeof udpm - 1) != 0) {
+        return "";
+    }
+    const char *hops = strstr(url, "ttl=");
+    if (hops != NULL && strtol(hops + 4, NULL, 10) > 0) {
+        return ", which leaves this machine: anyone on that network may speak";
+    }
+    const int found = sscanf(url + sizeof udpm - 1, "%15[0-9.]:%hu", group, &port);
+    return found >= 1 && is_routed_to_loopback(group, port)
+               ? " on loopback"
+               : ", which does not leave this machine, but hears others: "
+                 "`ip route add 224.0.0.0/4 dev lo` keeps them out";
+}
+
 bool saddle_lcm_open(saddle_lcm_port_t *port, const char *url)
 {
     *port = (saddle_lcm_port_t){.lcm = create_silently(url)};
+    if (port->lcm != NULL) {
+        port->link.state = SADDLE_LINK_UP;
+        snprintf(port->description, sizeof port->description, "%.60s%s", url, reach_of(url));
+    }
     return port->lcm != NULL;
 }
 
@@ -30,15 +74,16 @@ static void take_command(const lcm_recv_buf_t *received, const char *channel, vo
     const saddle_lcm_port_t *port = user;
     const int size = (int)received->data_size;
     saddlewalk_command_t message;
+    const uint32_t waited_us = saddle_since_us(received->recv_utime);
     (void)channel;
     if (saddlewalk_command_t_decode(received->data, 0, size, &message) != size) {
-        port->on_command(port->user, NULL);
+        port->on_command(port->user, NULL, waited_us);
         return;
     }
     const saddle_command_t command = {.mode = (uint8_t)message.mode,
                                       .speed_m_s = message.speed_m_s,
                                       .heel_strike_rad = message.heel_strike_rad};
-    port->on_command(port->user, &command);
+    port->on_command(port->user, &command, waited_us);
 }
 
 void saddle_lcm_subscribe(saddle_lcm_port_t *port, saddle_lcm_command_fn *on_command, void *user)
@@ -61,13 +106,21 @@ void saddle_lcm_receive(saddle_lcm_port_t *port, int limit)
     }
 }
 
+static void note_sent(saddle_lcm_port_t *port, bool sent)
+{
+    port->not_sent += !sent;
+    saddle_link_set(&port->link, sent ? SADDLE_LINK_UP : SADDLE_LINK_DOWN, "LCM",
+                    "a message cannot be sent, most often for want of a multicast route");
+}
+
 static void publish(saddle_lcm_port_t *port, const char *channel, const uint8_t *bytes, int size)
 {
-    port->not_sent += lcm_publish(port->lcm, channel, bytes, (unsigned int)size) != 0;
+    note_sent(port, lcm_publish(port->lcm, channel, bytes, (unsigned int)size) == 0);
 }
 
 void saddle_lcm_publish(saddle_lcm_port_t *port, const saddle_input_t *input,
-                        const saddle_output_t *output, const saddlewalk_health_t *health)
+                        const saddle_output_t *output, const saddlewalk_status_t *status,
+                        const saddlewalk_health_t *health)
 {
     if (port->lcm == NULL) {
         return;
@@ -79,7 +132,8 @@ void saddle_lcm_publish(saddle_lcm_port_t *port, const saddle_input_t *input,
         size = saddle_lcm_encode_output((saddle_lcm_output_t)part, output, health->utime_us, bytes);
         publish(port, saddle_lcm_channel((saddle_lcm_output_t)part), bytes, size);
     }
-    port->not_sent += saddlewalk_health_t_publish(port->lcm, "SADDLEWALK_HEALTH", health) != 0;
+    note_sent(port, saddlewalk_status_t_publish(port->lcm, "SADDLEWALK_STATUS", status) == 0);
+    note_sent(port, saddlewalk_health_t_publish(port->lcm, "SADDLEWALK_HEALTH", health) == 0);
 }
 
 void saddle_lcm_publish_config(saddle_lcm_port_t *port, const saddle_config_t *config,

@@ -7,7 +7,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -30,8 +29,9 @@ static void on_signal(int signal_number)
 
 static bool catch_signals(void)
 {
-    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
-    return pipe(stop_pipe) == 0 && fcntl(stop_pipe[1], F_SETFL, O_NONBLOCK) == 0 &&
+    const struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+    const struct sigaction ignore = {.sa_handler = SIG_IGN}; /* nobody reads our words any more */
+    return sigaction(SIGPIPE, &ignore, NULL) == 0 && pipe(stop_pipe) == 0 && fcntl(stop_pipe[1], F_SETFL, O_NONBLOCK) == 0 &&
            sigaction(SIGINT, &action, NULL) == 0 && sigaction(SIGTERM, &action, NULL) == 0;
 }
 
@@ -60,24 +60,30 @@ static bool open_ports(const saddle_options_t *options, saddle_bus_t *bus, saddl
     return true;
 }
 
-static void print_start(const saddle_options_t *options, const saddle_bus_t *bus)
+static void print_start(const saddle_options_t *options, const saddle_runner_t *runner)
 {
-    printf(SADDLE_PROGRAM " " SADDLE_VERSION ": CAN %s; LCM %s; clock %s\nready\n",
-           bus->description, options->lcm != NULL ? options->lcm : "none",
+    const saddle_realtime_t *realtime = &runner->realtime;
+    printf(SADDLE_PROGRAM " " SADDLE_VERSION ": CAN %s; LCM %s; clock %s", runner->bus->description,
+           options->lcm != NULL ? runner->lcm->description : "none",
            options->lockstep ? "lockstep" : "realtime");
+    if (realtime->fifo_priority != 0) {
+        printf("; SCHED_FIFO %d", realtime->fifo_priority);
+    }
+    printf("%s\nready\n", realtime->memory_locked ? "; memory locked" : "");
     fflush(stdout);
 }
 
-static void print_summary(const saddle_runner_t *runner)
+static void run(const saddle_options_t *options, saddle_bus_t *bus, saddle_lcm_port_t *lcm)
 {
-    const saddle_wire_receiver_t *receiver = &runner->receiver;
-    printf("%" PRIu32 " ticks, %" PRIu32 " late; frames: %" PRIu32 " accepted, rejected %" PRIu32
-           " bad CRC, %" PRIu32 " bad counter, %" PRIu32 " bad version, %" PRIu32
-           " malformed; commands rejected %" PRIu32 "; not sent %" PRIu32 " frames, %" PRIu64
-           " LCM messages\n",
-           runner->ticks, runner->late_ticks, receiver->accepted, receiver->bad_crc,
-           receiver->bad_counter, receiver->bad_version, receiver->malformed,
-           runner->commands_rejected, runner->frames_not_sent, runner->lcm->not_sent);
+    saddle_runner_t runner;
+    saddle_runner_init(&runner, &options->config, options->lockstep, options->command_from, bus,
+                       lcm, stop_pipe[0]);
+    /* After LCM has its threads: they need no such place on the processor. */
+    runner.realtime = saddle_realtime_enter(options->fifo_priority);
+    print_start(options, &runner);
+    saddle_runner_run(&runner);
+    const saddle_report_t report = saddle_runner_report(&runner);
+    saddle_report_print(&report);
 }
 
 int main(int argc, char *argv[])
@@ -96,11 +102,7 @@ int main(int argc, char *argv[])
     if (!open_ports(&options, &bus, &lcm)) {
         return EXIT_BAD_INPUT;
     }
-    saddle_runner_t runner;
-    saddle_runner_init(&runner, &options.config, options.lockstep, &bus, &lcm, stop_pipe[0]);
-    print_start(&options, &bus);
-    saddle_runner_run(&runner);
-    print_summary(&runner);
+    run(&options, &bus, &lcm);
     saddle_lcm_close(&lcm);
     saddle_bus_close(&bus);
     return 0;

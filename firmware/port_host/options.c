@@ -8,6 +8,7 @@
 #define DEFAULT_LCM "udpm://239.255.76.67:7667?ttl=0"
 #define DEFAULT_HEIGHT_M 1.79f
 #define DEFAULT_MASS_KG 63.3f
+#define FIFO_PRIORITY_MAX 99
 
 static bool complain(const char *option, const char *value, const char *right)
 {
@@ -82,12 +83,40 @@ static bool set_ankle(saddle_options_t *options, const char *text)
     return complain("ankle", text, "erf, rigid or cycloid");
 }
 
+static bool set_command_from(saddle_options_t *options, const char *text)
+{
+    static const char *const names[] = {
+        [SADDLE_SOURCE_NONE] = "first", [SADDLE_SOURCE_CAN] = "can", [SADDLE_SOURCE_LCM] = "lcm"};
+    for (int i = 0; i < 3; ++i) {
+        if (strcmp(names[i], text) == 0) {
+            options->command_from = (saddle_source_t)i;
+            return true;
+        }
+    }
+    return complain("command-from", text, "can, lcm or first");
+}
+
+static bool set_fifo(saddle_options_t *options, const char *text)
+{
+    char *end;
+    const long priority = strtol(text, &end, 10);
+    if (end == text || *end != '\0' || priority < 1 || priority > FIFO_PRIORITY_MAX) {
+        return complain("fifo", text, "a priority from 1 to 99");
+    }
+    options->fifo_priority = (int)priority;
+    return true;
+}
+
 static void print_help(const saddle_config_t *config)
 {
     puts("usage: " SADDLE_PROGRAM " [OPTION]...\n"
          "Walking planner and stability supervisor between CAN and LCM, one tick every 80 ms.\n\n"
-         "  --can SPEC         auto (default), socketcan:INTERFACE, udp, udp:GROUP:PORT\n"
+         "  --can SPEC         auto (default), socketcan:INTERFACE, udp, udp:GROUP:PORT;\n"
+         "                     udp:GROUP:PORT@INTERFACE leaves this machine\n"
          "  --lcm URL          default " DEFAULT_LCM "; none: without LCM\n"
+         "  --command-from X   whose commands are obeyed: can; lcm; first (default): the first\n"
+         "                     that commands, until it is silent and the walk has ended\n"
+         "  --fifo PRIORITY    schedule by SCHED_FIFO, 1 to 99, and keep all memory in place\n"
          "  --clock CLOCK      realtime (default); lockstep: one tick per set of measurements\n"
          "  --ankle ANKLE      ankle strategy: erf (default), rigid, cycloid\n"
          "  --set NAME=VALUE   a parameter of the person or the device, as often as needed\n"
@@ -108,6 +137,8 @@ static bool take_option(saddle_options_t *options, int letter, char *argv[])
     case 'k': return set_clock(options, optarg);
     case 'a': return set_ankle(options, optarg);
     case 's': return set_field(options, optarg);
+    case 'm': return set_command_from(options, optarg);
+    case 'f': return set_fifo(options, optarg);
     case ':':
         fprintf(stderr, SADDLE_PROGRAM ": %s: give a value (see --help)\n", argv[optind - 1]);
         return false;
@@ -118,9 +149,14 @@ static bool take_option(saddle_options_t *options, int letter, char *argv[])
     }
 }
 
-static bool is_consistent(const saddle_config_t *config)
+static bool is_consistent(const saddle_options_t *options)
 {
+    const saddle_config_t *config = &options->config;
     const char *name = saddle_config_check(config);
+    if (options->command_from == SADDLE_SOURCE_LCM && (options->lockstep || options->lcm == NULL)) {
+        return complain("command-from", "lcm",
+                        "can or first: there are no commands by LCM in lockstep or without LCM");
+    }
     if (name != NULL) {
         fprintf(stderr, SADDLE_PROGRAM ": --set %s=%.9g: give a value that suits the others\n",
                 name, (double)value_of(config, find_field(name, strlen(name))));
@@ -133,7 +169,8 @@ saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *
     static const struct option known[] = {
         {"can", required_argument, NULL, 'c'},   {"lcm", required_argument, NULL, 'l'},
         {"clock", required_argument, NULL, 'k'}, {"ankle", required_argument, NULL, 'a'},
-        {"set", required_argument, NULL, 's'},   {"help", no_argument, NULL, 'h'},
+        {"set", required_argument, NULL, 's'},   {"command-from", required_argument, NULL, 'm'},
+        {"fifo", required_argument, NULL, 'f'},  {"help", no_argument, NULL, 'h'},
         {NULL, 0, NULL, 0}};
     *options = (saddle_options_t){
         .can = "auto",
@@ -155,5 +192,5 @@ saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *
         fprintf(stderr, SADDLE_PROGRAM ": %s: give options only (see --help)\n", argv[optind]);
         return SADDLE_OPTIONS_WRONG;
     }
-    return is_consistent(&options->config) ? SADDLE_OPTIONS_RUN : SADDLE_OPTIONS_WRONG;
+    return is_consistent(options) ? SADDLE_OPTIONS_RUN : SADDLE_OPTIONS_WRONG;
 }

@@ -2,14 +2,15 @@
 #ifndef SADDLEWALK_HOST_OPTIONS_H
 #define SADDLEWALK_HOST_OPTIONS_H
 
-#include <saddlewalk/saddlewalk.h>
-
-#define SADDLE_PROGRAM "saddlewalk-host"
+#include "announce.h"
+#include "inbox.h"
 
 typedef struct {
     const char *can; /**< as saddle_bus_open() takes it */
     const char *lcm; /**< an LCM URL; NULL: no LCM */
     bool lockstep;
+    saddle_source_t command_from; /**< NONE: the first that commands */
+    int fifo_priority;            /**< 0: the ordinary scheduler */
     saddle_config_t config;
 } saddle_options_t;
 

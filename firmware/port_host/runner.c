@@ -1,8 +1,8 @@
 #include "runner.h"
 
+#include "clock.h"
 #include <string.h>
 #include <sys/select.h>
-#include <time.h>
 
 /** Taken at most between two looks at the clock, so that a flood cannot hold up a tick. */
 #define FRAMES_AT_ONCE 256
@@ -11,58 +11,32 @@
 /** The configuration is published with every so many ticks, about once a second. */
 #define CONFIG_TICKS 12
 
-#define MEASURED_SET                                                        \
-    (1u << SADDLE_WIRE_MEASURED_COM | 1u << SADDLE_WIRE_MEASURED_LEFT | \
-     1u << SADDLE_WIRE_MEASURED_RIGHT)
-
-static uint64_t now_us(void)
+/** The time of tick n in lockstep. */
+static uint64_t lockstep_us(const saddle_runner_t *runner)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
+    return (uint64_t)runner->timing.ticks * SADDLE_TICK_US;
 }
 
-/** The newest usable command wins, wherever it came from. Judged here, not only by the core: one
- *  that cannot be used must not take the place of a good one that still waits for its tick. */
-static void take_command(void *user, const saddle_command_t *command)
+/** When something came that has waited for so long. */
+static uint64_t arrival_us(const saddle_runner_t *runner, uint32_t waited_us)
+{
+    if (runner->lockstep) {
+        return lockstep_us(runner);
+    }
+    const uint64_t now_us = saddle_now_us();
+    return now_us > waited_us ? now_us - waited_us : 0;
+}
+
+static void take_lcm_command(void *user, const saddle_command_t *command, uint32_t waited_us)
 {
     saddle_runner_t *runner = user;
-    if (command != NULL && saddle_command_usable(command)) {
-        runner->input.command = *command;
-    } else {
-        ++runner->commands_rejected;
-    }
-}
-
-static void take_measured(saddle_runner_t *runner, saddle_wire_message_t message,
-                          const uint8_t *data)
-{
-    const uint8_t counter = saddle_wire_counter(data);
-    saddle_wire_decode_measured(message, data, &runner->input.measurement);
-    runner->received_us[message] = now_us();
-    if (counter != runner->set_counter) {
-        runner->set = 0;
-        runner->set_counter = counter;
-    }
-    runner->set |= 1u << message;
-}
-
-static void take_frame(saddle_runner_t *runner, const saddle_bus_frame_t *frame)
-{
-    const saddle_wire_message_t message =
-        saddle_wire_accept(&runner->receiver, frame->id, frame->data, frame->length);
-    if (message == SADDLE_WIRE_COMMAND) {
-        saddle_command_t command;
-        saddle_wire_decode_command(frame->data, &command);
-        take_command(runner, &command);
-    } else if (message != SADDLE_WIRE_NONE) {
-        take_measured(runner, message, frame->data);
-    }
+    saddle_inbox_take_command(&runner->inbox, SADDLE_SOURCE_LCM, command,
+                              arrival_us(runner, waited_us));
 }
 
 static bool is_lockstep_due(const saddle_runner_t *runner)
 {
-    return runner->lockstep && runner->set == MEASURED_SET;
+    return runner->lockstep && saddle_inbox_set_complete(&runner->inbox);
 }
 
 /** Take what waits on the bus; in lockstep, no more once a set of measurements is complete. */
@@ -71,109 +45,66 @@ static void take_frames(saddle_runner_t *runner)
     for (int i = 0; i < FRAMES_AT_ONCE && !is_lockstep_due(runner); ++i) {
         saddle_bus_frame_t frame;
         switch (saddle_bus_receive(runner->bus, &frame)) {
-        case SADDLE_BUS_EMPTY: return;
-        case SADDLE_BUS_JUNK: ++runner->receiver.malformed; break;
-        case SADDLE_BUS_FRAME: take_frame(runner, &frame); break;
+        case SADDLE_BUS_FRAME:
+            saddle_inbox_take_frame(&runner->inbox, frame.id, frame.data, frame.length,
+                                    arrival_us(runner, frame.waited_us));
+            break;
+        case SADDLE_BUS_JUNK: ++runner->inbox.receiver.malformed; break;
+        default: return;
         }
     }
-}
-
-static uint32_t age_us(const saddle_runner_t *runner, saddle_wire_message_t message,
-                       uint64_t time_us)
-{
-    const uint64_t received_us = runner->received_us[message];
-    if (received_us == 0 || runner->lockstep) {
-        return received_us == 0 ? SADDLE_AGE_NEVER_US : 0;
-    }
-    const uint64_t age = time_us > received_us ? time_us - received_us : 0;
-    return age < SADDLE_AGE_NEVER_US ? (uint32_t)age : SADDLE_AGE_NEVER_US;
-}
-
-/** Age of the oldest part; -1: a part never came. */
-static int32_t oldest_age_us(const saddle_measurement_t *measurement)
-{
-    uint32_t oldest = measurement->com.age_us;
-    for (size_t side = 0; side < 2; ++side) {
-        if (measurement->foot[side].age_us > oldest) {
-            oldest = measurement->foot[side].age_us;
-        }
-    }
-    if (oldest == SADDLE_AGE_NEVER_US) {
-        return -1;
-    }
-    return oldest < INT32_MAX ? (int32_t)oldest : INT32_MAX;
-}
-
-static uint32_t rejected(const saddle_runner_t *runner)
-{
-    const saddle_wire_receiver_t *receiver = &runner->receiver;
-    return receiver->malformed + receiver->bad_crc + receiver->bad_version +
-           receiver->bad_counter + runner->commands_rejected;
 }
 
 static void send_frames(saddle_runner_t *runner, const saddle_output_t *output)
 {
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
-    const saddle_wire_health_t health = {.late_ticks = runner->late_ticks,
-                                         .rejected_frames = rejected(runner)};
-    saddle_wire_encode_output(output, &health, (uint8_t)runner->ticks, frames);
+    const saddle_report_t report = saddle_runner_report(runner);
+    const saddle_wire_health_t health = saddle_report_can(&report);
+    saddle_wire_encode_output(output, &health, (uint8_t)runner->timing.ticks, frames);
     for (size_t i = 0; i < SADDLE_WIRE_OUTPUT_FRAMES; ++i) {
         saddle_bus_frame_t frame = {.id = frames[i].id, .length = sizeof frames[i].data};
         memcpy(frame.data, frames[i].data, sizeof frame.data);
-        if (!saddle_bus_send(runner->bus, &frame)) {
-            ++runner->frames_not_sent;
-        }
+        saddle_bus_send(runner->bus, &frame);
     }
 }
 
-static saddlewalk_health_t health_of(const saddle_runner_t *runner, const saddle_output_t *output,
-                                     uint32_t latency_us)
+static void publish(saddle_runner_t *runner, const saddle_input_t *input,
+                    const saddle_output_t *output)
 {
-    const saddle_wire_receiver_t *receiver = &runner->receiver;
-    return (saddlewalk_health_t){
-        .utime_us = (int64_t)runner->input.time_us,
-        .tick = (int32_t)runner->ticks,
-        .status = (int8_t)output->status,
-        .can_transport = (int8_t)runner->bus->kind,
-        .limits = (int32_t)output->limits,
-        .faults = (int32_t)output->faults,
-        .latency_us = (int32_t)latency_us,
-        .late_ticks = (int32_t)runner->late_ticks,
-        .measurement_age_us = oldest_age_us(&runner->input.measurement),
-        .frames_accepted = receiver->accepted,
-        .frames_bad_crc = receiver->bad_crc,
-        .frames_bad_counter = receiver->bad_counter,
-        .frames_malformed = receiver->malformed,
-        .frames_not_sent = runner->frames_not_sent,
-        .commands_rejected = (int64_t)runner->commands_rejected + receiver->bad_version,
-    };
+    const saddle_report_t report = saddle_runner_report(runner);
+    const saddlewalk_status_t status = saddle_report_status(&report);
+    const saddlewalk_health_t health = saddle_report_health(&report, output);
+    if (runner->timing.ticks % CONFIG_TICKS == 0) {
+        saddle_lcm_publish_config(runner->lcm, &runner->context.config, input->time_us,
+                                  runner->lockstep);
+    }
+    saddle_lcm_publish(runner->lcm, input, output, &status, &health);
 }
 
-static void tick(saddle_runner_t *runner, uint64_t time_us, uint32_t latency_us)
+/** Nobody commands any more, and the walk that was commanded has come to its end. */
+static bool is_commandless(const saddle_output_t *output)
 {
-    saddle_input_t *input = &runner->input;
+    return (output->faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) != 0u &&
+           output->plan.mode == (uint8_t)SADDLE_MODE_STANDING;
+}
+
+static void tick(saddle_runner_t *runner, uint64_t time_us)
+{
     saddle_output_t output;
-    input->time_us = time_us;
-    input->measurement.com.age_us = age_us(runner, SADDLE_WIRE_MEASURED_COM, time_us);
-    input->measurement.foot[SADDLE_LEFT].age_us =
-        age_us(runner, SADDLE_WIRE_MEASURED_LEFT, time_us);
-    input->measurement.foot[SADDLE_RIGHT].age_us =
-        age_us(runner, SADDLE_WIRE_MEASURED_RIGHT, time_us);
+    const saddle_input_t *input = saddle_inbox_read(&runner->inbox, time_us);
     (void)saddle_tick(&runner->context, input, &output); /* the status is part of the output */
     send_frames(runner, &output);
-    const saddlewalk_health_t health = health_of(runner, &output, latency_us);
-    if (runner->ticks % CONFIG_TICKS == 0) {
-        saddle_lcm_publish_config(runner->lcm, &runner->context.config, time_us, runner->lockstep);
+    publish(runner, input, &output);
+    saddle_bus_maintain(runner->bus);
+    if (is_commandless(&output)) {
+        saddle_inbox_release(&runner->inbox);
     }
-    saddle_lcm_publish(runner->lcm, input, &output, &health);
-    ++runner->ticks;
-    runner->set = 0;
 }
 
 /** Wait for something to receive, or until a time; 0: however long. False: the loop must end. */
 static bool wait(const saddle_runner_t *runner, uint64_t until_us)
 {
-    const uint64_t now = now_us();
+    const uint64_t now = saddle_now_us();
     const uint64_t left_us = until_us > now ? until_us - now : 0;
     struct timeval timeout = {.tv_sec = (time_t)(left_us / 1000000u),
                               .tv_usec = (suseconds_t)(left_us % 1000000u)};
@@ -192,43 +123,63 @@ static bool wait(const saddle_runner_t *runner, uint64_t until_us)
            !FD_ISSET(runner->stop_fd, &readable);
 }
 
+/** The newest place on the grid, from one that has been due for a while. */
+static uint64_t newest_place_us(saddle_runner_t *runner, uint64_t due_us, uint64_t now_us)
+{
+    const uint64_t missed = (now_us - due_us) / SADDLE_TICK_US;
+    runner->timing.missed_ticks += (uint32_t)missed;
+    return due_us + missed * SADDLE_TICK_US;
+}
+
 static void run_realtime(saddle_runner_t *runner)
 {
-    uint64_t due_us = now_us() + SADDLE_TICK_US;
+    uint64_t due_us = saddle_now_us() + SADDLE_TICK_US;
     while (wait(runner, due_us)) {
-        const uint64_t awake_us = now_us();
+        const uint64_t awake_us = saddle_now_us();
         take_frames(runner);
         saddle_lcm_receive(runner->lcm, COMMANDS_AT_ONCE);
         if (awake_us < due_us) {
             continue;
         }
-        tick(runner, due_us, (uint32_t)(awake_us - due_us));
+        due_us = newest_place_us(runner, due_us, awake_us);
+        saddle_timing_begin(&runner->timing, due_us, awake_us);
+        tick(runner, due_us);
         due_us += SADDLE_TICK_US;
-        if (now_us() > due_us) {
-            ++runner->late_ticks;
-            due_us += (now_us() - due_us) / SADDLE_TICK_US * SADDLE_TICK_US;
-        }
+        saddle_timing_end(&runner->timing, due_us, saddle_now_us());
     }
+}
+
+/** Without an end of its own, the wait would not see a link come back. */
+static uint64_t lockstep_deadline_us(const saddle_runner_t *runner)
+{
+    return runner->bus->link.state == SADDLE_LINK_DOWN ? saddle_now_us() + SADDLE_TICK_US : 0;
 }
 
 static void run_lockstep(saddle_runner_t *runner)
 {
-    while (wait(runner, 0)) {
+    while (wait(runner, lockstep_deadline_us(runner))) {
         take_frames(runner);
         if (is_lockstep_due(runner)) {
-            tick(runner, (uint64_t)runner->ticks * SADDLE_TICK_US, 0);
+            const uint64_t due_us = lockstep_us(runner);
+            saddle_timing_begin(&runner->timing, due_us, due_us);
+            tick(runner, due_us);
+            saddle_timing_end(&runner->timing, due_us, due_us);
+        } else {
+            saddle_bus_maintain(runner->bus);
         }
     }
 }
 
 void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, bool lockstep,
-                        saddle_bus_t *bus, saddle_lcm_port_t *lcm, int stop_fd)
+                        saddle_source_t command_from, saddle_bus_t *bus, saddle_lcm_port_t *lcm,
+                        int stop_fd)
 {
     *runner = (saddle_runner_t){
         .bus = bus, .lcm = lcm, .stop_fd = stop_fd, .lockstep = lockstep};
     (void)saddle_init(&runner->context, config);
+    saddle_inbox_init(&runner->inbox, command_from);
     if (!lockstep) { /* in lockstep commands come by CAN, in order with the measurements */
-        saddle_lcm_subscribe(lcm, take_command, runner);
+        saddle_lcm_subscribe(lcm, take_lcm_command, runner);
     }
 }
 
@@ -239,4 +190,13 @@ void saddle_runner_run(saddle_runner_t *runner)
     } else {
         run_realtime(runner);
     }
+}
+
+saddle_report_t saddle_runner_report(const saddle_runner_t *runner)
+{
+    return (saddle_report_t){.timing = &runner->timing,
+                             .inbox = &runner->inbox,
+                             .bus = runner->bus,
+                             .lcm = runner->lcm,
+                             .realtime = &runner->realtime};
 }

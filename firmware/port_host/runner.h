@@ -2,19 +2,18 @@
  * The loop of the host process: receives, ticks the core every 80 ms, sends.
  *
  * Realtime: ticks lie on an absolute grid of CLOCK_MONOTONIC; the time of a tick is its place on
- * the grid. The loop waits for frames and the next place at once, so each measurement gets the
- * time at which it came and none waits in a buffer. A tick that ends after the next place is
- * counted as late, and the places that it missed are left out.
+ * the grid. The loop waits for frames and the next place at once, and the kernel notes when each
+ * came, so its age is true even if it had to wait. A tick that ends after the next place counts as
+ * late, and a place that passed without a tick as missed: there is one tick at the newest place,
+ * not one for each.
  * Lockstep: a set of the three MEASURED_xxx frames with one counter triggers one tick. The time of
- * tick n is n * 80 ms and every age is 0, so the same frames give the same bits.
+ * tick n is n * 80 ms, a frame's that of the next tick, and a tick takes no time: measurements are
+ * of age 0, and the same frames give the same bits.
  */
 #ifndef SADDLEWALK_HOST_RUNNER_H
 #define SADDLEWALK_HOST_RUNNER_H
 
-#include "bus.h"
-#include "lcm_port.h"
-#include <saddlewalk/saddlewalk.h>
-#include <saddlewalk/wire.h>
+#include "report.h"
 
 #define SADDLE_TICK_US 80000
 
@@ -24,22 +23,20 @@ typedef struct {
     int stop_fd; /**< readable when the loop must end */
     bool lockstep;
     saddle_context_t context;
-    saddle_input_t input;
-    saddle_wire_receiver_t receiver;
-    uint64_t received_us[SADDLE_WIRE_MESSAGE_COUNT]; /**< 0: never */
-    uint32_t set;          /**< lockstep: bits of the messages that have come since the last tick */
-    uint8_t set_counter;   /**< their counter */
-    uint32_t ticks;
-    uint32_t late_ticks;
-    uint32_t frames_not_sent;
-    uint32_t commands_rejected; /**< unknown mode, number not finite, or no LCM command at all */
+    saddle_inbox_t inbox;
+    saddle_timing_t timing;
+    saddle_realtime_t realtime;
 } saddle_runner_t;
 
 /** Ready the runner. config has passed saddle_config_check(); bus and lcm are kept. */
 void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, bool lockstep,
-                        saddle_bus_t *bus, saddle_lcm_port_t *lcm, int stop_fd);
+                        saddle_source_t command_from, saddle_bus_t *bus, saddle_lcm_port_t *lcm,
+                        int stop_fd);
 
 /** Run until stop_fd is readable; a tick that has begun is finished. */
 void saddle_runner_run(saddle_runner_t *runner);
+
+/** What there is to report on now. */
+saddle_report_t saddle_runner_report(const saddle_runner_t *runner);
 
 #endif

@@ -16,6 +16,7 @@ from saddlewalk.rerun import Difference, Report
 from saddlewalk.ticks import MESSAGES, TICK_S
 
 TICK_US = round(TICK_S * 1e6)
+NEVER_US = 0xFFFFFFFF  # SADDLE_AGE_NEVER_US
 NO_IDENTIFIER = 0xFFFFFFFF  # what the host makes of a frame that is not a classic data frame
 _INPUTS = "COMMAND MEASURED_COM MEASURED_LEFT MEASURED_RIGHT".split()
 
@@ -74,6 +75,7 @@ class _Node:
         self._input = ffi().new("saddle_input_t *")
         self._set: set[int] = set()
         self._set_counter = 0
+        self._command_us: int | None = None  # the time of the tick after it
 
     def take(self, frame: can.Message) -> None:
         lib = library()
@@ -93,6 +95,7 @@ class _Node:
         library().saddle_wire_decode_command(data, command)
         if library().saddle_command_usable(command):
             self._input.command = command[0]
+            self._command_us = self.ticks * TICK_US
 
     def _take_measured(self, message: int, data: bytes) -> None:
         lib = library()
@@ -108,7 +111,10 @@ class _Node:
             self._tick()
 
     def _tick(self) -> None:
-        self._input.time_us = self.ticks * TICK_US
+        time_us = self.ticks * TICK_US
+        never = self._command_us is None
+        self._input.time_us = time_us
+        self._input.command_age_us = NEVER_US if never else time_us - self._command_us
         self.firmware.tick(self._input)
         self.ticks += 1
         self.waiting += 1

@@ -1,20 +1,28 @@
 """The host process on a CAN bus, seen from a node of ours on the same bus."""
 
+import itertools
 import os
 import signal
 import subprocess
 import time
 
 import can
+import pytest
 
 from saddlewalk import paths
 from saddlewalk.bus import open_bus, private_udp
+from saddlewalk.errors import UserError
+from saddlewalk.lcmbus import open_lcm
 from saddlewalk.wire import Receiver, Sender
 
 WAIT_S = 2.0  # for what must come
 SILENCE_S = 0.1  # for what must not
 TICK_S = 0.08
-MESSAGES_PER_TICK = 18
+MESSAGES_PER_TICK = 21
+# For tests that command once and are about something else.
+COMMAND_HOLDS = "--set=command_max_age_s=3600"
+# A walk that comes to its speed within half a second.
+QUICK = ("--set=shift_time_s=0.1", "--set=acceleration_m_s2=5")
 
 WALK = {"MODE": 1, "SPEED": 1.2, "HEEL_STRIKE": 0.1745}
 STANDING = {
@@ -69,14 +77,60 @@ class Host:
         """The messages of the next tick by name."""
         return dict(self.receiver.accept(frame) for frame in self.tick_frames())
 
-    def stop(self, by: signal.Signals = signal.SIGTERM) -> str:
-        """End the process cleanly; returns its summary line."""
+    def stop(self, by: signal.Signals = signal.SIGTERM, announced: tuple[str, ...] = ()) -> str:
+        """End the process cleanly; returns its summary line.
+
+        announced: how each line that it said on the way begins.
+        """
         self.process.send_signal(by)
         output, errors = self.process.communicate(timeout=WAIT_S)
-        assert (self.process.returncode, errors) == (0, "")
+        assert self.process.returncode == 0, errors
+        for line, begin in itertools.zip_longest(errors.splitlines(), announced):
+            assert line and begin and line.startswith(f"saddlewalk-host: {begin}"), errors
         assert output.count("\n") == 1
         return output
 
 
 def lockstep(*options: str, spec: str | None = None) -> Host:
-    return Host("--lcm", "none", "--clock", "lockstep", *options, spec=spec)
+    """In which a command holds until the next one."""
+    return Host("--lcm=none", "--clock=lockstep", COMMAND_HOLDS, *options, spec=spec)
+
+
+class LcmNode:
+    """Another LCM process's view: what came, by channel."""
+
+    def __init__(self, url: str) -> None:
+        self.lcm = open_lcm(url)
+        self.latest = {}
+        channels = "SADDLEWALK_(INPUT|PLAN|SCORES|VERDICT|BOS|STATUS|HEALTH)"
+        self.lcm.subscribe(channels, self._take).set_queue_capacity(1000)
+
+    def _take(self, channel: str, data: bytes) -> None:
+        from saddlewalk import lcm_types
+
+        self.latest[channel] = getattr(lcm_types, f"{channel[11:].lower()}_t").decode(data)
+
+    def take(self, timeout_s: float = WAIT_S) -> dict:
+        """What came by the next SADDLEWALK_HEALTH, which is the last of a tick."""
+        self.latest = {}
+        deadline_s = time.monotonic() + timeout_s
+        while "SADDLEWALK_HEALTH" not in self.latest and time.monotonic() < deadline_s:
+            self.lcm.handle_timeout(50)
+        return self.latest
+
+    def command(self, mode: int, speed_m_s: float) -> None:
+        from saddlewalk.lcm_types import command_t
+
+        message = command_t()
+        message.mode, message.speed_m_s = mode, speed_m_s
+        self.lcm.publish("SADDLEWALK_COMMAND", message.encode())
+
+
+def own_lcm() -> str:
+    """An LCM URL that no other test uses. Skips where LCM cannot run."""
+    url = f"udpm://239.255.76.67:{private_udp().rpartition(':')[2]}?ttl=0"
+    try:
+        open_lcm(url)
+    except UserError as error:
+        pytest.skip(str(error))
+    return url

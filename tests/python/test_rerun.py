@@ -1,5 +1,6 @@
 """`saddlewalk rerun`: a log gives the same bits again, and what is not the same is named."""
 
+import random
 import shutil
 import subprocess
 import sys
@@ -9,7 +10,7 @@ import can
 import lcm
 import pytest
 
-from conftest import private_lcm
+from host_node import own_lcm
 from saddlewalk import wire
 from saddlewalk.bus import private_udp
 from saddlewalk.cli import main
@@ -55,7 +56,7 @@ def test_a_log_is_equal_to_the_bit(walk, capsys):
 
 def test_a_run_in_real_time_is_equal_too(tmp_path, capsys):
     """With the ages that its measurements had; of which a CAN log does not know."""
-    options = ["--can", private_udp(), "--lcm", private_lcm()]
+    options = ["--can", private_udp(), "--lcm", own_lcm()]
     body = ["--height", "1.6", "--mass", "48.123"]
     assert main(["demo", "--duration", "2", "--out", str(tmp_path), *options, *body]) == 0
     status, told, _ = rerun(tmp_path / "walk.lcmlog", capsys)
@@ -93,11 +94,48 @@ def test_a_flipped_bit_of_an_input_shows_in_the_outputs(walk, tmp_path, capsys):
     events = events_of(walk)
     index = [i for i, e in enumerate(events) if e.channel == "SADDLEWALK_INPUT"][40]
     data = bytearray(events[index].data)
-    data[8 + 8 + 4 + 1 + 4 + 4 + 4 + 3] ^= 1  # the CoM's velocity along x, its last bit
+    data[8 + 8 + 4 + 1 + 4 + 4 + 8 + 4 + 3] ^= 1  # the CoM's velocity along x, its last bit
     events[index] = Changed(events[index], bytes(data))
     status, told, _ = rerun(write_events(tmp_path / "log", events), capsys)
     assert status == 1
     assert "tick 40 (3.20 s), SADDLEWALK_" in told and "(0x" in told
+
+
+def test_every_field_of_an_input_is_logged_to_the_bit():
+    """Random bytes in each, NaNs of any kind among them, and back."""
+    from saddlewalk.firmware import ffi, library
+
+    rng = random.Random(3)
+    given, back = (ffi().new("saddle_input_t *") for _ in range(2))
+    tick, room = ffi().new("int32_t *"), ffi().new("uint8_t[4096]")
+    for number in range(200):
+        ffi().memmove(given, rng.randbytes(ffi().sizeof(given[0])), ffi().sizeof(given[0]))
+        given.time_us &= 2**63 - 1
+        for foot in given.measurement.foot:
+            ffi().memmove(ffi().addressof(foot, "contact"), bytes([rng.randrange(2)]), 1)
+        size = library().saddle_lcm_encode_input(given, number, room)
+        assert library().saddle_lcm_decode_input(room, size, back, tick)
+        assert leaves(back[0]) == leaves(given[0]) and tick[0] == number
+    assert len(leaves(given[0])) >= 14
+    assert not library().saddle_lcm_decode_input(room, size - 1, back, tick)
+
+
+def leaves(struct) -> dict[str, bytes]:
+    """The bytes of each member of a struct that is none itself, by its path."""
+    from saddlewalk.firmware import ffi
+
+    kind, found = ffi().typeof(struct), {}
+    if kind.kind == "array":
+        members = [(f"[{i}]", ffi().addressof(struct, i)[0]) for i in range(kind.length)]
+    else:
+        members = [(name, None) for name, _ in kind.fields]
+    for name, element in members:
+        member = element if element is not None else getattr(struct, name)
+        if isinstance(member, ffi().CData):
+            found |= {f"{name}.{path}": data for path, data in leaves(member).items()}
+        else:
+            found[name] = bytes(ffi().buffer(ffi().addressof(struct, name)))
+    return found
 
 
 def test_every_field_of_the_configuration_is_logged_and_counts(walk, tmp_path, capsys):
@@ -241,16 +279,16 @@ def test_a_can_log_with_another_body_differs(walk, capsys):
 
 def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
     frames = frames_of(walk)
-    log = can_log(tmp_path / "mid.log", frames[22 * 5 :])
+    log = can_log(tmp_path / "mid.log", frames[25 * 5 :])
     status, _, told = rerun(log, capsys)
     assert (status, told.count("\n")) == (2, 1) and "the log begins in mid-run" in told
     answered = [i for i, frame in enumerate(frames) if frame.arbitration_id == 0x140]
     status, told, _ = rerun(
-        can_log(tmp_path / "lost.log", frames[: answered[9] - 17] + frames[answered[9] + 1 :]),
+        can_log(tmp_path / "lost.log", frames[: answered[9] - 20] + frames[answered[9] + 1 :]),
         capsys,
     )
     assert status == 1 and "9 ticks computed" in told and "2 sets of measurements came" in told
-    log = can_log(tmp_path / "frame.log", frames[: answered[9] - 1] + frames[answered[9] :])
+    log = can_log(tmp_path / "frame.log", frames[: answered[9] - 4] + frames[answered[9] - 3 :])
     status, told, _ = rerun(log, capsys)
     assert status == 1 and "RECOVERY of 1 ticks is not in the log, the first time of tick 9" in told
 

@@ -1,0 +1,13 @@
+/** The clocks of the host process. */
+#ifndef SADDLEWALK_HOST_CLOCK_H
+#define SADDLEWALK_HOST_CLOCK_H
+
+#include <stdint.h>
+
+/** CLOCK_MONOTONIC, which no one sets. */
+uint64_t saddle_now_us(void);
+
+/** Time since a moment of CLOCK_REALTIME that has just been; 0 if the clock was set back since. */
+uint32_t saddle_since_us(int64_t realtime_us);
+
+#endif

@@ -1,0 +1,112 @@
+#include "inbox.h"
+
+#include "announce.h"
+
+#define MEASURED_SET                                                        \
+    (1u << SADDLE_WIRE_MEASURED_COM | 1u << SADDLE_WIRE_MEASURED_LEFT | \
+     1u << SADDLE_WIRE_MEASURED_RIGHT)
+
+void saddle_inbox_init(saddle_inbox_t *inbox, saddle_source_t chosen)
+{
+    *inbox = (saddle_inbox_t){.chosen = chosen, .authority = chosen};
+}
+
+static void note_arrival(saddle_inbox_t *inbox, saddle_wire_message_t message, uint64_t time_us)
+{
+    inbox->came_us[message] = time_us;
+    inbox->came |= 1u << message;
+}
+
+void saddle_inbox_take_command(saddle_inbox_t *inbox, saddle_source_t source,
+                               const saddle_command_t *command, uint64_t time_us)
+{
+    if (inbox->authority != SADDLE_SOURCE_NONE && inbox->authority != source) {
+        ++inbox->commands_ignored;
+    } else if (command == NULL || !saddle_command_usable(command)) {
+        ++inbox->commands_unusable;
+    } else {
+        inbox->authority = source;
+        inbox->input.command = *command;
+        ++inbox->commands_obeyed;
+        note_arrival(inbox, SADDLE_WIRE_COMMAND, time_us);
+    }
+}
+
+static void take_measured(saddle_inbox_t *inbox, saddle_wire_message_t message,
+                          const uint8_t *data, uint64_t time_us)
+{
+    const uint8_t counter = saddle_wire_counter(data);
+    saddle_wire_decode_measured(message, data, &inbox->input.measurement);
+    note_arrival(inbox, message, time_us);
+    if (counter != inbox->set_counter) {
+        inbox->set = 0;
+        inbox->set_counter = counter;
+    }
+    inbox->set |= 1u << message;
+}
+
+/** Said once: the counts tell the rest. */
+static void announce_first_bad_version(const saddle_wire_receiver_t *receiver, uint32_t before)
+{
+    if (before == 0 && receiver->bad_version != 0) {
+        saddle_announce("COMMAND of wire version %u refused: this firmware speaks version %u",
+                        (unsigned)receiver->other_version, (unsigned)SADDLE_WIRE_VERSION);
+    }
+}
+
+void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *data,
+                             size_t length, uint64_t time_us)
+{
+    const uint32_t bad_version_before = inbox->receiver.bad_version;
+    const saddle_wire_message_t message = saddle_wire_accept(&inbox->receiver, id, data, length);
+    if (message == SADDLE_WIRE_COMMAND) {
+        saddle_command_t command;
+        saddle_wire_decode_command(data, &command);
+        saddle_inbox_take_command(inbox, SADDLE_SOURCE_CAN, &command, time_us);
+    } else if (message != SADDLE_WIRE_NONE) {
+        take_measured(inbox, message, data, time_us);
+    } else {
+        announce_first_bad_version(&inbox->receiver, bad_version_before);
+    }
+}
+
+bool saddle_inbox_set_complete(const saddle_inbox_t *inbox)
+{
+    return inbox->set == MEASURED_SET;
+}
+
+static uint32_t age_us(const saddle_inbox_t *inbox, saddle_wire_message_t message,
+                       uint64_t time_us)
+{
+    if ((inbox->came & 1u << message) == 0u) {
+        return SADDLE_AGE_NEVER_US;
+    }
+    const uint64_t came_us = inbox->came_us[message];
+    const uint64_t age = time_us > came_us ? time_us - came_us : 0;
+    return age < SADDLE_AGE_NEVER_US ? (uint32_t)age : SADDLE_AGE_NEVER_US - 1u;
+}
+
+const saddle_input_t *saddle_inbox_read(saddle_inbox_t *inbox, uint64_t time_us)
+{
+    saddle_input_t *input = &inbox->input;
+    saddle_measurement_t *measurement = &input->measurement;
+    input->time_us = time_us;
+    input->command_age_us = age_us(inbox, SADDLE_WIRE_COMMAND, time_us);
+    measurement->com.age_us = age_us(inbox, SADDLE_WIRE_MEASURED_COM, time_us);
+    measurement->foot[SADDLE_LEFT].age_us = age_us(inbox, SADDLE_WIRE_MEASURED_LEFT, time_us);
+    measurement->foot[SADDLE_RIGHT].age_us = age_us(inbox, SADDLE_WIRE_MEASURED_RIGHT, time_us);
+    inbox->set = 0;
+    return input;
+}
+
+void saddle_inbox_release(saddle_inbox_t *inbox)
+{
+    inbox->authority = inbox->chosen;
+}
+
+uint32_t saddle_inbox_rejected(const saddle_inbox_t *inbox)
+{
+    const saddle_wire_receiver_t *receiver = &inbox->receiver;
+    return receiver->malformed + receiver->bad_crc + receiver->bad_version +
+           receiver->bad_counter + inbox->commands_unusable + inbox->commands_ignored;
+}

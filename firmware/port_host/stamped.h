@@ -1,0 +1,19 @@
+/** Receive, and tell how long what came has waited for it. */
+#ifndef SADDLEWALK_HOST_STAMPED_H
+#define SADDLEWALK_HOST_STAMPED_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/socket.h>
+#include <sys/types.h>
+
+/** Have the kernel note when something comes. */
+bool saddle_stamp(int fd);
+
+/** As recvfrom(), without blocking. waited_us: since it came; a process that was stopped, or a
+ *  flood, leaves old data in the queue, and their age must not begin when they are read. */
+ssize_t saddle_receive_stamped(int fd, void *bytes, size_t size, struct sockaddr *source,
+                               socklen_t source_size, uint32_t *waited_us);
+
+#endif
