@@ -28,18 +28,14 @@ def spec(request) -> str:
     return private_udp() if request.param == "udp" else request.param
 
 
-def private_lcm() -> str:
-    """An LCM URL that no other test uses."""
-    return f"udpm://239.255.76.67:{private_udp().rpartition(':')[2]}?ttl=0"
-
-
 @pytest.fixture(scope="session")
 def walk(tmp_path_factory) -> Path:
     """The folder of a demo in lockstep, with its logs. Not to be changed."""
+    from host_node import own_lcm
     from saddlewalk.cli import main
 
     folder = tmp_path_factory.mktemp("walk")
-    options = ["--can", private_udp(), "--lcm", private_lcm(), "--clock", "lockstep"]
+    options = ["--can", private_udp(), "--lcm", own_lcm(), "--clock", "lockstep"]
     options += ["--out", str(folder), "--speed", "1.2", "--duration", "13"]
     assert main(["demo", *options]) == 0
     return folder

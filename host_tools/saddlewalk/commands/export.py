@@ -1,0 +1,59 @@
+"""`saddlewalk export`: an LCM log for other tools, as CSV, Parquet or MCAP."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+FORMATS = ("csv", "parquet", "mcap")
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser(
+        "export",
+        help="an LCM log as CSV, Parquet or MCAP",
+        description="Write an LCM log for other tools: a table for each channel, a row a message, "
+        "units in the column names. MCAP (JSON with schemas) opens in Foxglove and PlotJuggler. "
+        "Parquet and MCAP need the optional packages of saddlewalk[export].",
+    )
+    parser.add_argument("log", type=Path, metavar="LOG", help="an LCM log")
+    parser.add_argument("--format", choices=FORMATS, required=True)
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="OUT",
+        help="mcap: the file; csv and parquet: the folder, which gets a file for each channel "
+        "(default: beside LOG, as walk.mcap, walk-csv or walk-parquet of walk.lcmlog)",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    from saddlewalk import log_tables
+    from saddlewalk.errors import UserError
+    from saddlewalk.logs import load_lcm_log
+
+    log = load_lcm_log(args.log)
+    tables, left_out = log_tables.tables_of(log.records)
+    if not tables:
+        raise UserError(
+            f"{args.log}: none of its {len(log.records)} messages, on {', '.join(left_out)}, is of "
+            "a type of saddlewalk's"
+        )
+    out = args.out or _beside(args.log, args.format)
+    if out.exists() and out.samefile(args.log):
+        raise UserError(f"--out {out} is the log itself: give another")
+    write = getattr(log_tables, f"write_{args.format}")
+    for path in write(tables, out):
+        print(path)
+    remarks = [
+        f"left out: {n} messages on {name}, of no type of ours" for name, n in left_out.items()
+    ]
+    remarks += [f"incomplete: {log.broken}"] if log.broken else []
+    for remark in remarks:
+        print(remark, file=sys.stderr)
+    return 1 if log.broken else 0
+
+
+def _beside(log: Path, form: str) -> Path:
+    return log.with_suffix(".mcap") if form == "mcap" else log.with_name(f"{log.stem}-{form}")

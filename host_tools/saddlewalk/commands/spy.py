@@ -1,0 +1,42 @@
+"""`saddlewalk spy`: lcm-spy with our types compiled in."""
+
+import argparse
+import os
+import sys
+from typing import Any
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser(
+        "spy",
+        help="open lcm-spy with our types compiled in (needs Java)",
+        description="Open lcm-spy, LCM's window of live channels, fields and curves, with "
+        "saddlewalk's types compiled in. Needs a Java development kit and a display; in a "
+        "terminal, `saddlewalk monitor` shows the scores.",
+    )
+    parser.add_argument("--lcm", metavar="URL", help="default: udpm on this machine")
+    parser.add_argument(
+        "--jar",
+        action="store_true",
+        help="only compile the types and print where their jar is, for other LCM tools in Java",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    from saddlewalk.errors import UserError
+    from saddlewalk.java_types import lcm_program, types_jar
+    from saddlewalk.lcmbus import DEFAULT_URL, open_lcm
+
+    jar = types_jar()
+    if args.jar:
+        print(jar)
+        return 0
+    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+        raise UserError(
+            "lcm-spy needs a display and DISPLAY is not set: `saddlewalk monitor` needs none"
+        )
+    open_lcm(args.lcm)  # says what is wrong in a line, which Java does not
+    url = args.lcm or DEFAULT_URL
+    environment = os.environ | {"CLASSPATH": str(jar)}
+    os.execve(lcm_program("lcm-spy"), ["lcm-spy", f"--lcm-url={url}"], environment)
