@@ -242,7 +242,11 @@ def _draw_above(simulations: Simulations, trials: Sequence[Trial]) -> bytes:
 
 def _person_like(trials: Sequence[Trial]) -> Trial | None:
     """The adult whose speed is nearest to the figure's and who stepped from right to left."""
-    able = [trial for trial in trials if not trial.child and _right_to_left(trial)]
+    able = [
+        trial
+        for trial in trials
+        if trial.speed_m_s > 0 and not trial.child and _right_to_left(trial)
+    ]
     return min(able, key=lambda trial: abs(trial.speed_m_s - FIGURE_SPEED_M_S), default=None)
 
 
@@ -283,7 +287,7 @@ def _draw_recorded_step(axes: Axes, trial: Trial) -> None:
 def _draw_funnel(axes: Axes, feet_m: np.ndarray) -> None:
     """feet_m: (n, 2, 2), left and right CoP at each instant."""
     config = mean_body()
-    for cops_m in feet_m:
+    for cops_m in feet_m[np.isfinite(feet_m).all(axis=(1, 2))]:
         axes.add_patch(Polygon(bos_polygon(config, cops_m), color=SKY, alpha=0.12, lw=0))
         axes.add_patch(Polygon(bos_polygon(config, cops_m), fill=False, ec=SKY, alpha=0.5, lw=0.6))
         axes.plot(*cops_m.T, color="0.6", lw=0.6)

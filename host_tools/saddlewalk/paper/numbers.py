@@ -255,14 +255,16 @@ def _better_than_rigid(simulations: Simulations) -> Finding:
 
 
 def _accurate_when_slow(simulations: Simulations) -> Finding:
-    slow, fast = (
-        (simulations.at(v).vertical_m - mean_m) / sd_m for v, (mean_m, sd_m) in ORENDURFF_M.items()
+    planner, rigid = (
+        [(of[v].vertical_m - mean_m) / sd_m for v, (mean_m, sd_m) in ORENDURFF_M.items()]
+        for of in ({v: simulations.at(v) for v in ORENDURFF_M}, simulations.rigid)
     )
+    slow, fast = planner
     return Finding(
         "The vertical trajectory is accurate at lower speeds and beyond human variability at "
         "higher ones (fig:08)",
-        f"{slow:+.1f} SD of Orendurff's people at 0.7 m/s, {fast:+.1f} SD at 1.6 m/s; "
-        f"variability taken as {VARIABILITY_SD:g} SD",
+        f"planner {slow:+.1f} and {fast:+.1f} SD off Orendurff's people at 0.7 and 1.6 m/s, rigid "
+        f"{rigid[0]:+.1f} and {rigid[1]:+.1f}; variability taken as {VARIABILITY_SD:g} SD",
         abs(slow) <= VARIABILITY_SD < fast,
     )
 

@@ -72,8 +72,12 @@ def verdict(numbers: Sequence[Number], findings: Sequence[Finding]) -> str:
     """One line: what was compared, and what is off."""
     off = [f"{n.what} {n.case}".strip() for n in numbers if not n.sound]
     fallen = [finding.claim for finding in findings if not finding.holds]
-    sound = f"{len(numbers) - len(off)} of {len(numbers)} numbers are within their tolerance, "
-    sound += f"{len(findings) - len(fallen)} of {len(findings)} findings hold"
+    stated = sum(number.stated for number in numbers)
+    sound = (
+        f"{len(numbers) - len(off)} of {len(numbers)} numbers ({stated} stated in the paper, "
+        f"{len(numbers) - stated} as read) are within their tolerance, "
+        f"{len(findings) - len(fallen)} of {len(findings)} findings hold"
+    )
     return "; ".join([sound, *(f"off: {words}" for words in off + fallen)])
 
 
@@ -167,7 +171,8 @@ def _people(trials: Sequence[Trial]) -> str:
         [
             "## Recorded people",
             table(header, rows),
-            "Measured minus model at each person's speed, without the children:",
+            "Measured minus model at each person's speed, without the children and without speeds "
+            "that are not feasible for the mean body:",
             _departures_table([trial for trial in trials if not trial.child]),
             _credits(trials),
         ]
@@ -176,7 +181,7 @@ def _people(trials: Sequence[Trial]) -> str:
 
 def _departures_table(trials: Sequence[Trial]) -> str:
     """How far people are from the model, bias and RMSE over the trials that tell."""
-    walking = [trial for trial in trials if trial.speed_m_s > 0]
+    walking = [trial for trial in trials if gait(trial.speed_m_s).planned]
     model = [(gait(trial.speed_m_s), simulate(trial.speed_m_s)) for trial in walking]
     quantities: dict[str, Callable] = {
         "half step length (mm)": lambda t, g, _: 1e3 * (t.step_length_m / 2 - g.half_step_m),

@@ -19,6 +19,7 @@ SPEEDS_M_S = (0.7, 1.0, 1.2, 1.6)
 HEEL_STRIKES_DEG = (5, 10, 15)
 FIGURE_HEEL_STRIKE_DEG = 10
 PAPER_STEP_S = 0.08
+SPEED_FLOOR_M_S = 0.01  # SADDLE_SPEED_FLOOR_M_S
 FINE_SAMPLES = 2000  # a stride
 COARSE_SAMPLES = 200  # for a curve over many speeds
 
@@ -40,6 +41,7 @@ class Gait:
     half_step_max_m: float  # reach limit
     width_m: float
     vertical_m: float  # of the human regression, peak to peak
+    planned: bool  # a walk at this speed is planned as it is, not limited to another one
 
 
 def gait(speed_m_s: float) -> Gait:
@@ -57,6 +59,7 @@ def gait(speed_m_s: float) -> Gait:
         half_step_max_m=bounds.max_m,
         width_m=width_m,
         vertical_m=quarter.vertical_m,
+        planned=bool(bounds.feasible) and speed_m_s >= SPEED_FLOOR_M_S,
     )
 
 
@@ -163,7 +166,7 @@ def simulate(
     ankle: str = "erf",
     samples: int = FINE_SAMPLES,
 ) -> Walk:
-    """A stride in equal time steps."""
+    """A stride in equal time steps. gait(speed_m_s).planned holds."""
     stride_s = 4 * gait(speed_m_s).half_step_m / speed_m_s
     return _simulate(speed_m_s, heel_strike_deg, ankle, stride_s / samples, samples)
 
