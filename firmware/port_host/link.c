@@ -13,6 +13,7 @@ void saddle_link_set(saddle_link_t *link, saddle_link_state_t state, const char 
     if (state == SADDLE_LINK_UP) {
         saddle_announce("%s is back", what);
     } else {
-        saddle_announce("%s is lost: %s; ticks go on, and it is tried again with each", what, why);
+        saddle_announce("%s is lost: %s%s", what, why,
+                        state == SADDLE_LINK_DOWN ? "; ticks go on, and each tries it again" : "");
     }
 }

@@ -1,0 +1,116 @@
+/** Who is obeyed, and how old what was given is. */
+#include <inbox.h>
+
+#include <unity.h>
+
+static saddle_inbox_t inbox;
+
+static const saddle_command_t walk = {SADDLE_COMMAND_WALK, 1.2f, 0.17f};
+static const saddle_command_t stroll = {SADDLE_COMMAND_WALK, 0.5f, 0.17f};
+static const saddle_command_t no_mode = {7, 0.0f, 0.0f};
+
+void setUp(void)
+{
+    saddle_inbox_init(&inbox, SADDLE_SOURCE_NONE);
+}
+
+void tearDown(void)
+{
+}
+
+static void expect_counts(uint32_t obeyed, uint32_t unusable, uint32_t ignored)
+{
+    TEST_ASSERT_EQUAL_UINT32(obeyed, inbox.commands_obeyed);
+    TEST_ASSERT_EQUAL_UINT32(unusable, inbox.commands_unusable);
+    TEST_ASSERT_EQUAL_UINT32(ignored, inbox.commands_ignored);
+    TEST_ASSERT_EQUAL_UINT32(unusable + ignored, saddle_inbox_rejected(&inbox));
+}
+
+static void test_the_first_that_commands_has_authority_until_released(void)
+{
+    saddle_inbox_take_command(&inbox, SADDLE_SOURCE_LCM, &walk, 1000);
+    saddle_inbox_take_command(&inbox, SADDLE_SOURCE_CAN, &stroll, 9000);
+    TEST_ASSERT_EQUAL_FLOAT(1.2f, saddle_inbox_read(&inbox, 10000)->command.speed_m_s);
+    TEST_ASSERT_EQUAL_UINT32(9000, inbox.input.command_age_us);
+    TEST_ASSERT_EQUAL_INT(SADDLE_SOURCE_LCM, inbox.authority);
+    expect_counts(1, 0, 1);
+    saddle_inbox_release(&inbox);
+    saddle_inbox_take_command(&inbox, SADDLE_SOURCE_CAN, &stroll, 11000);
+    TEST_ASSERT_EQUAL_INT(SADDLE_SOURCE_CAN, inbox.authority);
+    TEST_ASSERT_EQUAL_FLOAT(0.5f, saddle_inbox_read(&inbox, 11000)->command.speed_m_s);
+    expect_counts(2, 0, 1);
+}
+
+static void test_a_chosen_source_is_the_only_one(void)
+{
+    saddle_inbox_init(&inbox, SADDLE_SOURCE_CAN);
+    saddle_inbox_take_command(&inbox, SADDLE_SOURCE_LCM, &walk, 0);
+    saddle_inbox_release(&inbox);
+    saddle_inbox_take_command(&inbox, SADDLE_SOURCE_LCM, &walk, 0);
+    expect_counts(0, 0, 2);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US, saddle_inbox_read(&inbox, 5)->command_age_us);
+}
+
+static void test_what_cannot_be_used_gives_no_authority_and_no_age(void)
+{
+    saddle_inbox_take_command(&inbox, SADDLE_SOURCE_LCM, &no_mode, 0);
+    saddle_inbox_take_command(&inbox, SADDLE_SOURCE_LCM, NULL, 0);
+    TEST_ASSERT_EQUAL_INT(SADDLE_SOURCE_NONE, inbox.authority);
+    saddle_inbox_take_command(&inbox, SADDLE_SOURCE_CAN, &walk, 100);
+    saddle_inbox_take_command(&inbox, SADDLE_SOURCE_CAN, &no_mode, 200);
+    TEST_ASSERT_EQUAL_UINT32(200, saddle_inbox_read(&inbox, 300)->command_age_us);
+    expect_counts(1, 3, 0);
+}
+
+static void send_set(uint8_t counter, size_t frames_sent, uint64_t time_us)
+{
+    const saddle_measurement_t measurement = {.com.height_m = 1.0f};
+    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
+    saddle_wire_encode_measurement(&measurement, counter, frames);
+    for (size_t i = 0; i < frames_sent; ++i) {
+        saddle_inbox_take_frame(&inbox, frames[i].id, frames[i].data, sizeof frames[i].data,
+                                time_us + i);
+    }
+}
+
+static void test_each_part_has_its_age(void)
+{
+    send_set(0, 3, 1000);
+    send_set(1, 1, 2000);
+    const saddle_measurement_t *measurement = &saddle_inbox_read(&inbox, 3000)->measurement;
+    TEST_ASSERT_EQUAL_UINT32(1000, measurement->com.age_us);
+    TEST_ASSERT_EQUAL_UINT32(1999, measurement->foot[SADDLE_LEFT].age_us);
+    TEST_ASSERT_EQUAL_UINT32(1998, measurement->foot[SADDLE_RIGHT].age_us);
+    TEST_ASSERT_EQUAL_UINT32(0, saddle_inbox_read(&inbox, 500)->measurement.com.age_us);
+}
+
+static void test_no_age_is_mistaken_for_never(void)
+{
+    send_set(0, 1, 0);
+    const saddle_measurement_t *measurement =
+        &saddle_inbox_read(&inbox, UINT64_C(1) << 40)->measurement;
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US - 1u, measurement->com.age_us);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US, measurement->foot[SADDLE_LEFT].age_us);
+}
+
+static void test_a_set_is_of_one_instant_and_read_once(void)
+{
+    send_set(0, 2, 0);
+    TEST_ASSERT_FALSE(saddle_inbox_set_complete(&inbox));
+    send_set(1, 3, 0);
+    TEST_ASSERT_TRUE(saddle_inbox_set_complete(&inbox));
+    (void)saddle_inbox_read(&inbox, 0);
+    TEST_ASSERT_FALSE(saddle_inbox_set_complete(&inbox));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_first_that_commands_has_authority_until_released);
+    RUN_TEST(test_a_chosen_source_is_the_only_one);
+    RUN_TEST(test_what_cannot_be_used_gives_no_authority_and_no_age);
+    RUN_TEST(test_each_part_has_its_age);
+    RUN_TEST(test_no_age_is_mistaken_for_never);
+    RUN_TEST(test_a_set_is_of_one_instant_and_read_once);
+    return UNITY_END();
+}
