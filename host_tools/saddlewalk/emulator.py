@@ -2,8 +2,9 @@
 
 The CoM is a linear inverted pendulum about the CoP, and the CoP cannot leave the feet that stand.
 The feet follow the planned swing with a lag and stay where they land. The wearer steers by the
-CoP alone (ankle strategy) and, once the XCoM is further off than that can mend, shifts the next
-landing by the rest (stepping strategy).
+CoP (ankle strategy). Where to step is the firmware's to say: one kind of wearer keeps to the
+planned steps whatever happens, the other takes the firmware's recovery step, as far and as fast as
+its legs can.
 
 Points of the transverse plane are complex numbers, x forward + 1j * y to the left, in metres: a
 step of 1 ms in plain floats is ten times faster than in arrays. World frame: x from the start,
@@ -24,7 +25,8 @@ STANDING, STARTING, WALKING, STOPPING = range(4)  # saddle_mode_t
 MODES = ("standing", "starting", "walking", "stopping")
 SPEED_MIN_M_S = 0.01  # slower steps last as long as if so fast
 REST_SHARE = 1 - 2 / math.pi  # of the way to the middle, from the foot over which a walk ends
-FORESIGHT_S = 1.0  # errors that grow for longer are beyond any step
+NEARBY_M = 0.08 + 0.05j  # a recovery step so near to the planned one is not worth leaving that
+ARRIVED_M = 0.02  # and lands this near to its place
 
 
 @dataclass(frozen=True)
@@ -47,9 +49,8 @@ class Body:
     cop_gain: float = 1.5  # XCoM errors shrink at cop_gain * natural frequency
     cop_lag_s: float = 0.03
     foot_lag_s: float = 0.03
-    ankle_band_m: complex = 0.03 + 0.01j  # XCoM error that stepping leaves to the ankles
-    step_reach_m: complex = 0.30 + 0.25j  # largest shift of a landing
-    crossing_m: float = 0.15  # the swing foot may cross the stance foot's line by this much
+    detour_speed_m_s: float = 3.0  # at which a swing can leave the planned one
+    reach: complex = 0.56 + 0.30j  # largest step from the stance foot, of the body's height
     fall_height: float = 0.75  # of the pendulum length: lower is a fall
 
     @classmethod
@@ -105,6 +106,15 @@ class Push:
 
 
 @dataclass(frozen=True)
+class RecoveryStep:
+    """Where the firmware wants a foot so that the walk can go on: the planned place, or near it."""
+
+    foot: int
+    landing_m: complex  # from the stance CoP
+    urgent: bool  # the wearer was not announced stable
+
+
+@dataclass(frozen=True)
 class Plan:
     """The firmware's plan at one tick: x from the planned stance CoP, y from the walking line."""
 
@@ -122,6 +132,7 @@ class Plan:
     time_to_landing_s: float  # not told of a last swing
     landing_m: complex
     leg_length_m: float
+    recovery: RecoveryStep | None = None  # None: no place helps, or nothing to compare with
 
     @property
     def both_feet_stand(self) -> bool:
@@ -136,6 +147,11 @@ class Plan:
     def landing_in_s(self) -> float:
         """Time until the swing foot comes down."""
         return self.time_to_via_point_s if self.lands_beside else self.time_to_landing_s
+
+    @property
+    def half_width_m(self) -> float:
+        """To the left, from the stance foot to midway between it and the landing."""
+        return (self.landing_m - self.feet_m[self.support]).imag / 2
 
     @property
     def step_s(self) -> float:
@@ -228,10 +244,12 @@ class Wearer:
         noise: Noise | None = None,
         pushes: tuple[Push, ...] = (),
         seed: int = 0,
+        takes_recovery_step: bool = True,
     ) -> None:
         self.body = body or Body()
         self.noise = noise or Noise()
         self.pushes = pushes
+        self.takes_recovery_step = takes_recovery_step
         self.time_s = 0.0  # since the first plan
         self.com_m = self.cop_m = 0j
         self.velocity_m_s = 0j
@@ -251,6 +269,9 @@ class Wearer:
         self._midline_m = 0j  # of the running step, at the stance foot
         self._leading = LEFT  # the foot that landed last
         self._since_landing_s = math.inf  # since standing: inf
+        self._recovery_shift_m = 0j  # of the landing of the running swing
+        self._hurries = False  # to the recovery step, and lands before its time
+        self._detour_m = 0j  # of the swing foot from the planned swing
         self._unsteadiness = 0j
         self._steps = 0
         self._started = False
@@ -294,16 +315,22 @@ class Wearer:
             self._leading, self._since_landing_s = plan.support, math.inf
         elif not self.feet[plan.support].contact:
             self._land(plan.support)
-        stance = plan.feet_m[plan.support]
-        self._origin_m = self.feet[plan.support].position_m - stance
+        self._hold(plan)
         gained = plan.velocity_m_s - before.velocity_m_s if before and interval_s else 0j
         self._acceleration_m_s2 = gained / interval_s if gained else 0j
         if not plan.both_feet_stand:
-            across_m = (plan.landing_m - stance).imag
-            self._midline_m = self.feet[plan.support].position_m + 0.5j * across_m
             self._steady = SteadyStep(
-                self.body, plan.step_length_m, abs(across_m), self._step_s(plan)
+                self.body, plan.step_length_m, 2 * abs(plan.half_width_m), self._step_s(plan)
             )
+
+    def _hold(self, plan: Plan) -> None:
+        """The plan's frame against the foot that it steps on or, once that has landed, steps to."""
+        stance, swing = plan.support, 1 - plan.support
+        foot, place = (stance, plan.feet_m[stance])
+        if self._since_landing_s <= 0 and self._leading == swing:
+            foot, place = swing, plan.landing_m
+        self._origin_m = self.feet[foot].position_m - place
+        self._midline_m = self._origin_m + plan.feet_m[stance] + 1j * plan.half_width_m
 
     def _step_s(self, plan: Plan) -> float:
         """Duration of a whole step: at the present speed; on the first swing, at its landing."""
@@ -401,23 +428,27 @@ class Wearer:
         if foot.contact:
             foot.contact = due or self._trailing_share() > 0
         else:
-            self._swing(plan, swing, foot)
-            if due:
-                self._land(swing)
+            arrived = self._swing(plan, swing, foot)
+            if due or arrived:
+                self._land(swing, early_s=max(plan.landing_in_s - self._plan_age_s, 0.0))
+                self._hold(plan)
 
-    def _swing(self, plan: Plan, side: int, foot: Foot) -> None:
-        """Critically damped pursuit of the planned foot, shifted by what the ankles cannot mend."""
+    def _swing(self, plan: Plan, side: int, foot: Foot) -> bool:
+        """Critically damped pursuit of the planned swing, or of the way to the recovery step.
+
+        True when a foot that hurries to a recovery step is there.
+        """
         age = self._plan_age_s
         rate = plan.swing_velocity_m_s
-        shift = self._origin_m + self._landing_shift(plan.landing_in_s - age)
-        landing = shift + plan.landing_m
-        target = shift + plan.feet_m[side] + rate * age
-        if target.real > landing.real:
+        path = self._origin_m + plan.feet_m[side] + rate * age
+        planned = self._origin_m + plan.landing_m
+        shift = self._recovery_shift(plan, side)
+        landing = planned + shift
+        hurries = self._hurries and not self._is_first_swing
+        self._turn_to(landing - path if hurries else shift)
+        target = path + self._detour_m
+        if target.real > landing.real >= foot.position_m.real:
             target, rate = complex(landing.real, target.imag), 1j * rate.imag
-        outward = 1 if side == LEFT else -1
-        line = self.feet[plan.support].position_m.imag - outward * self.body.crossing_m
-        if outward * (target.imag - line) < 0:
-            target = complex(target.real, line)
         lag = self.body.foot_lag_s
         pull = (target - foot.position_m) / lag + 2 * (rate - foot.velocity_m_s)
         foot.velocity_m_s += pull * (STEP_S / lag)
@@ -425,23 +456,40 @@ class Wearer:
             foot.velocity_m_s = 1j * foot.velocity_m_s.imag
         foot.position_m += foot.velocity_m_s * STEP_S
         foot.height_m = max(plan.foot_heights_m[side] + plan.swing_rise_m_s * age, 0.0)
+        return hurries and abs(foot.position_m - landing) < ARRIVED_M
 
-    def _landing_shift(self, time_to_landing_s: float) -> complex:
-        """The XCoM error that will be left at landing when the ankles do what they can."""
-        beyond = self.xcom_error_m - _limited(self.xcom_error_m, self.body.ankle_band_m)
-        foreseen_s = min(max(time_to_landing_s, 0.0), FORESIGHT_S)
-        growth = math.exp(self.body.natural_frequency_rad_s * foreseen_s)
-        return _limited(beyond * growth, self.body.step_reach_m)
+    def _recovery_shift(self, plan: Plan, side: int) -> complex:
+        """From the planned landing to the recovery step's, as far as the leg reaches.
+
+        0 if that is near the planned landing. Once no place helps any more, the foot goes on to
+        the last that would have.
+        """
+        step = plan.recovery
+        if self.takes_recovery_step and step is not None and step.foot == side:
+            reach_m = self.body.reach * self.body.height_m
+            planned_m = plan.landing_m - plan.feet_m[1 - side]
+            shift_m = _limited(step.landing_m, reach_m) - planned_m
+            self._recovery_shift_m = 0j if shift_m == _limited(shift_m, NEARBY_M) else shift_m
+            self._hurries = step.urgent and self._recovery_shift_m != 0
+        return self._recovery_shift_m
+
+    def _turn_to(self, detour_m: complex) -> None:
+        """Leave the planned swing by as much, or return to it, no faster than the leg can."""
+        change_m, fastest_m = detour_m - self._detour_m, self.body.detour_speed_m_s * STEP_S
+        self._detour_m += change_m * min(fastest_m / (abs(change_m) or 1.0), 1.0)
 
     def _stand(self) -> None:
         for side in (LEFT, RIGHT):
             if not self.feet[side].contact:
                 self._land(side)
 
-    def _land(self, side: int) -> None:
+    def _land(self, side: int, early_s: float = 0.0) -> None:
+        """early_s: before the plan has the foot land; until then the other stays as well."""
         self.feet[side].land()
         self._leading = side
-        self._since_landing_s = 0.0
+        self._since_landing_s = -early_s
+        self._detour_m = self._recovery_shift_m = 0j
+        self._hurries = False
 
     def _trailing_share(self) -> float:
         """The most of the load that the trailing foot may carry: it hands over what it has."""
@@ -450,7 +498,7 @@ class Wearer:
         if self._plan is None or self._plan.both_feet_stand or self._must_wait(self._plan):
             return 1.0
         duration_s = self.body.double_support * self._plan.step_s
-        return max(1.0 - self._since_landing_s / duration_s, 0.0)
+        return min(max(1.0 - self._since_landing_s / duration_s, 0.0), 1.0)
 
     def _must_wait(self, plan: Plan) -> bool:
         """The last swing is slow: it does not begin before the stance foot can carry alone."""

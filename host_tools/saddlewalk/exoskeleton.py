@@ -2,16 +2,26 @@
 
 import math
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import can
 
-from saddlewalk.core import Command
-from saddlewalk.emulator import LEFT, RIGHT, STANDING, STEP_S, Measurement, Plan, Wearer
+from saddlewalk.emulator import (
+    LEFT,
+    RIGHT,
+    STANDING,
+    STEP_S,
+    Measurement,
+    Plan,
+    RecoveryStep,
+    Wearer,
+)
 from saddlewalk.errors import UserError
+from saddlewalk.schedule import Schedule
 from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages, TickReader, next_tick
+from saddlewalk.verdict import level_name
 from saddlewalk.wire import Sender
 
 WAKE_UP_S = 0.01  # realtime: measurements at 100 Hz
@@ -20,9 +30,6 @@ START_TICKS = 125  # that do not do as commanded, before a walk is given up: 10 
 RESEND_S = 0.25
 
 MODE_STAND, MODE_WALK = 0, 1
-
-
-Schedule = Callable[[float], Command]  # what is asked for at a time of the walk, s
 
 
 @dataclass(frozen=True)
@@ -71,7 +78,15 @@ def plan_of(messages: Messages) -> Plan | None:
         time_to_landing_s=events["TIME_TO_TOE_OFF"],
         landing_m=complex(landing["X"], landing["Y"]),
         leg_length_m=landing["LEG_LENGTH"],
+        recovery=_recovery_of(messages),
     )
+
+
+def _recovery_of(messages: Messages) -> RecoveryStep | None:
+    told, level = messages["RECOVERY"], level_name(int(messages["VERDICT"]["LEVEL"]))
+    if not told["FOUND"]:
+        return None
+    return RecoveryStep(int(told["FOOT"]), complex(told["X"], told["Y"]), level != "stable")
 
 
 class Exoskeleton:

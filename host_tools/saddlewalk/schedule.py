@@ -6,7 +6,7 @@ each speed is wanted from its time on.
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,20 @@ LONGEST_TICK_S = 0.08
 LONGEST_S = 1e6
 _SAME_TIME_S = 1e-9
 _SIDES = ("left", "right")
+
+Speeds = list[tuple[float, float]]  # (from this time on, s; speed, m/s, 0: stand), times from 0
+Schedule = Callable[[float], Command]  # what is asked for at a time of the walk, s
+
+
+def schedule_of(speeds: Speeds, heel_strike_rad: float) -> Schedule:
+    """The command at any time from 0 on."""
+    starts_s = [from_s for from_s, _ in speeds]
+
+    def at(time_s: float) -> Command:
+        index = bisect_right(starts_s, time_s + _SAME_TIME_S) - 1
+        return Command(speeds[index][1], heel_strike_rad)
+
+    return at
 
 
 @dataclass(frozen=True)

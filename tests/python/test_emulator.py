@@ -1,14 +1,18 @@
 """The emulated wearer: its physics, that it can fall, and that it walks as people do."""
 
 import cmath
+import itertools
 import math
 
 import numpy as np
 import pytest
 
+from saddlewalk import closed_loop
 from saddlewalk.cli import main
-from saddlewalk.core import Command, Core, Measurement, ffi, library
+from saddlewalk.closed_loop import Tick
+from saddlewalk.core import ffi, library
 from saddlewalk.emulator import (
+    ARRIVED_M,
     LEFT,
     RIGHT,
     STANDING,
@@ -18,59 +22,20 @@ from saddlewalk.emulator import (
     Noise,
     Plan,
     Push,
+    RecoveryStep,
     SteadyStep,
     Wearer,
 )
+from saddlewalk.schedule import schedule_of
+from saddlewalk.ticks import TICK_S
 
-TICK_US = 80_000
-TICK_STEPS = 80
 STEADY = Noise(0.0, 0.0, 0.0)
 
 
-class Planner:
-    """The C core, asked for its plan every 80 ms; speeds: (from this time on, m/s; 0: stand)."""
-
-    def __init__(self, wearer: Wearer, speeds: list[tuple[float, float]]) -> None:
-        config = ffi().new("saddle_config_t *")
-        config[0] = library().saddle_config_default(1.79, 63.3)
-        self._core, self._wearer, self._speeds = Core(config), wearer, speeds
-        self._ticks = 0
-
-    def next(self) -> Plan:
-        time_us = self._ticks * TICK_US
-        speed = [speed for from_s, speed in self._speeds if from_s <= time_us * 1e-6 + 1e-9][-1]
-        command = Command(speed or None, math.radians(10))
-        plan = self._core.tick(time_us, command, self._measured()).plan
-        self._ticks += 1
-        feet = plan.foot_m
-        return Plan(
-            mode=plan.mode,
-            support=plan.support,
-            step_length_m=plan.step_length_m,
-            speed_m_s=plan.speed_m_s,
-            com_m=complex(plan.com_m.x, plan.com_m.y),
-            velocity_m_s=complex(plan.com_velocity_m_s.x, plan.com_velocity_m_s.y),
-            feet_m=(complex(feet[0].x, feet[0].y), complex(feet[1].x, feet[1].y)),
-            foot_heights_m=(feet[0].z, feet[1].z),
-            swing_velocity_m_s=complex(plan.swing_velocity_m_s.x, plan.swing_velocity_m_s.y),
-            swing_rise_m_s=plan.swing_velocity_m_s.z,
-            time_to_via_point_s=plan.time_to_via_point_s,
-            time_to_landing_s=plan.time_to_toe_off_s,
-            landing_m=complex(plan.landing_m.x, plan.landing_m.y),
-            leg_length_m=plan.leg_length_m,
-        )
-
-    def _measured(self) -> Measurement:
-        seen = self._wearer.measure()
-        velocity, (left, right) = seen.velocity_m_s, seen.feet_m
-        return Measurement(
-            com_height_m=seen.height_m,
-            com_velocity_m_s=(velocity.real, velocity.imag),
-            left_cop_m=(left.real, left.imag),
-            right_cop_m=(right.real, right.imag),
-            left_contact=seen.contact[LEFT],
-            right_contact=seen.contact[RIGHT],
-        )
+def default_config():
+    config = ffi().new("saddle_config_t *")
+    config[0] = library().saddle_config_default(1.79, 63.3)
+    return config
 
 
 Speeds = float | list[tuple[float, float]]
@@ -78,14 +43,17 @@ Speeds = float | list[tuple[float, float]]
 
 def walk(wearer: Wearer, speeds: Speeds, duration_s: float, watch=None) -> Wearer:
     """Lead the wearer through a walk; watch(plan, steps since that plan) after every step."""
-    planner = Planner(wearer, speeds if isinstance(speeds, list) else [(0.0, speeds)])
-    for step in range(round(duration_s / STEP_S)):
-        if step % TICK_STEPS == 0:
-            plan = planner.next()
-            wearer.follow(plan)
-        wearer.step()
+    schedule = schedule_of(
+        speeds if isinstance(speeds, list) else [(0.0, speeds)], math.radians(10)
+    )
+
+    def after_step(tick: Tick, steps: int) -> None:
         if watch:
-            watch(plan, step % TICK_STEPS + 1)
+            watch(tick.plan, steps)
+
+    ticks = closed_loop.walk(default_config(), wearer, schedule, after_step)
+    for _ in itertools.takewhile(lambda tick: tick.time_s < duration_s - TICK_S / 2, ticks):
+        pass
     return wearer
 
 
@@ -162,7 +130,7 @@ def test_same_seed_same_bits_and_another_seed_others():
 
 @pytest.mark.parametrize("speed_m_s", [0.5, 1.2])
 def test_a_foot_on_the_ground_never_moves(speed_m_s):
-    wearer = Wearer(pushes=(Push(8, 5.0, 90),))
+    wearer = Wearer(pushes=(Push(8, 5.0, 270),))
     stood: dict[int, complex] = {}
     landings = 0
 
@@ -217,7 +185,7 @@ def test_push_gives_its_impulse_and_no_more():
 @pytest.mark.parametrize(
     ("push", "falls"),
     [
-        (Push(30, 5.0, 0), False),
+        (Push(15, 5.0, 0), False),
         (Push(20, 5.0, 180), False),
         (Push(8, 5.0, 90), False),
         (Push(60, 5.0, 90), True),
@@ -228,6 +196,50 @@ def test_push_gives_its_impulse_and_no_more():
 def test_small_pushes_are_survived_and_large_ones_are_not(speed_m_s, push, falls):
     wearer = walk(Wearer(pushes=(push,)), speed_m_s, 10.0)
     assert wearer.fallen == falls
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "push"),
+    [(1.2, Push(30, 5.0, 0)), (1.2, Push(40, 5.0, 180)), (0.8, Push(12, 5.0, 90))],
+)
+def test_the_recovery_step_saves_who_would_fall_on_the_planned_ones(speed_m_s, push):
+    planned = walk(Wearer(pushes=(push,), takes_recovery_step=False), speed_m_s, 10.0)
+    assert planned.fallen
+    assert not walk(Wearer(pushes=(push,)), speed_m_s, 10.0).fallen
+
+
+@pytest.mark.parametrize("push", [Push(25, 5.0, 0), Push(10, 5.0, 90)])
+def test_who_keeps_to_the_planned_steps_lands_as_planned_until_the_fall(push):
+    wearer = Wearer(noise=STEADY, pushes=(push,), takes_recovery_step=False)
+    landings = landings_missed_by(wearer, 1.2, 10.0)
+    assert wearer.fallen and landings[-1][0] > 5.5
+    # The foot comes down within a tick of a path that is planned 80 ms ahead.
+    assert max(miss for _, miss in landings) < 0.005
+
+
+def test_a_recovery_step_goes_to_its_place_and_no_faster_than_the_leg():
+    body, seen = Body(), []
+
+    def told(recovery: RecoveryStep | None) -> Plan:
+        return Plan(
+            mode=WALKING, support=RIGHT, step_length_m=0.7, speed_m_s=1.2, com_m=0.05 + 0.05j,
+            velocity_m_s=1.2 + 0j, feet_m=(0.0 + 0.1j, 0j), foot_heights_m=(0.05, 0.0),
+            swing_velocity_m_s=2.8 + 0j, swing_rise_m_s=0.0, time_to_via_point_s=0.25,
+            time_to_landing_s=0.25, landing_m=0.7 + 0.1j, leg_length_m=1.02, recovery=recovery,
+        )  # fmt: skip
+
+    wearer = Wearer(body, STEADY)
+    wearer.follow(told(None))
+    while wearer.feet[LEFT].contact:
+        wearer.step()
+    step = RecoveryStep(LEFT, 0.7 + 0.5j, urgent=False)
+    wearer.follow(told(step))
+    while not wearer.feet[LEFT].contact:
+        wearer.step()
+        seen.append(wearer.feet[LEFT].position_m - wearer.feet[RIGHT].position_m)
+    way = np.abs(np.diff([place.imag for place in seen])) / STEP_S
+    assert 1.0 < way.max() < body.detour_speed_m_s
+    assert seen[-1] == pytest.approx(0.7 + 0.5j, abs=ARRIVED_M)
 
 
 def test_a_fall_is_for_good_and_low():
@@ -302,23 +314,30 @@ def test_a_wearer_who_stood_for_a_minute_walks_again():
     assert wearer.com_m.real > 9.0
 
 
-def test_landings_beside_their_place_do_not_add_up():
-    """After a push the stance foot is where the plan has it, and the next ones land as planned."""
-    wearer = Wearer(noise=STEADY, pushes=(Push(15, 6.0, 20),))
+def landings_missed_by(
+    wearer: Wearer, speed_m_s: float, duration_s: float
+) -> list[tuple[float, float]]:
+    """Walk; (time, how far from the planned place) of each landing, seen from the stance foot."""
     missed: list[tuple[float, float]] = []
     contact = [True, True]
 
     def watch(plan: Plan, steps: int) -> None:
-        for side, foot in enumerate(wearer.feet):
-            if foot.contact and not contact[side] and side != plan.support:
-                missed.append(
-                    (wearer.time_s, abs(foot.position_m - wearer.origin_m - plan.landing_m))
-                )
-            contact[side] = foot.contact
-        stance = wearer.feet[plan.support].position_m
-        assert abs(stance - wearer.origin_m - plan.feet_m[plan.support]) < 1e-12
+        stance, swing = wearer.feet[plan.support], wearer.feet[1 - plan.support]
+        planned_m = plan.landing_m - plan.feet_m[plan.support]
+        if swing.contact and not contact[1 - plan.support]:
+            missed.append((wearer.time_s, abs(swing.position_m - stance.position_m - planned_m)))
+        contact[:] = [foot.contact for foot in wearer.feet]
+        held = stance.position_m - plan.feet_m[plan.support], swing.position_m - plan.landing_m
+        assert wearer.fallen or min(abs(wearer.origin_m - origin) for origin in held) < 1e-12
 
-    walk(wearer, 1.2, 16.0, watch)
+    walk(wearer, speed_m_s, duration_s, watch)
+    return missed
+
+
+def test_landings_beside_their_place_do_not_add_up():
+    """After a push the plan is held against a foot on the ground, and landings are as planned."""
+    wearer = Wearer(noise=STEADY, pushes=(Push(12, 6.0, 250),))
+    missed = landings_missed_by(wearer, 1.2, 16.0)
     assert max(miss for time_s, miss in missed if time_s < 8.0) > 0.05
     assert max(miss for time_s, miss in missed if time_s > 12.0) < 0.005
 
@@ -370,19 +389,18 @@ def test_measurements_are_noisy_as_said():
 
 def test_a_lost_plan_ends_the_walk_and_the_wearer_puts_both_feet_down():
     wearer = Wearer()
-    planner = Planner(wearer, [(0.0, 0.5)])
-    wearer.follow(plan := planner.next())
-    while plan.time_to_landing_s < Wearer.PLAN_MAX_AGE_S + 0.2 or wearer.feet[LEFT].contact:
-        for _ in range(TICK_STEPS):
-            wearer.step()
-        wearer.follow(plan := planner.next())
+    ticks = closed_loop.walk(default_config(), wearer, schedule_of([(0.0, 0.5)], 0.0))
+    for tick in ticks:
+        late_s = tick.plan.time_to_landing_s - Wearer.PLAN_MAX_AGE_S
+        if late_s > 0.2 and not wearer.feet[LEFT].contact:
+            break
     for _ in range(round(Wearer.PLAN_MAX_AGE_S / STEP_S) - 1):
         wearer.step()
     assert not wearer.feet[LEFT].contact and wearer.feet[RIGHT].contact
     for _ in range(3):
         wearer.step()
     assert wearer.feet[LEFT].contact and wearer.feet[RIGHT].contact
-    wearer.follow(plan := planner.next())
+    plan = next(ticks).plan
     stance = wearer.feet[plan.support].position_m
     assert abs(wearer.origin_m + plan.feet_m[plan.support] - stance) < 1e-12
 

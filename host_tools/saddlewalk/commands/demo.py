@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import math
 import sys
 import time
 from collections.abc import Iterator
@@ -11,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from saddlewalk.commands.emulate import (
     add_walk_options,
     events_printer,
-    schedule_of,
     speeds_of,
     summary,
     wearer_of,
@@ -63,6 +63,7 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.exoskeleton import Exoskeleton
     from saddlewalk.host import running_host
     from saddlewalk.recorder import Recorder
+    from saddlewalk.schedule import schedule_of
 
     wearer = wearer_of(args, config, Noise())
     speeds = speeds_of(args, SPEEDS)
@@ -74,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
             print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
             with _display(lcm) as display:
                 observers = [recorder, events_printer(wearer), display]
-                schedule = schedule_of(args, speeds)
+                schedule = schedule_of(speeds, math.radians(args.hs_angle))
                 exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers)
                 exoskeleton.run(args.clock, args.duration)
     to_stand = schedule(args.duration).speed_m_s == 0

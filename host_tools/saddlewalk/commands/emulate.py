@@ -2,7 +2,6 @@
 
 import argparse
 import math
-from bisect import bisect_right
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
@@ -11,12 +10,9 @@ from saddlewalk.options import add_gait_options, number_in, whole_number_in
 
 if TYPE_CHECKING:
     from saddlewalk.emulator import Noise, Push, Wearer
-    from saddlewalk.exoskeleton import Schedule
-
-Speeds = list[tuple[float, float]]  # (from this time on, s; speed, m/s, 0: stand), times from 0
+    from saddlewalk.schedule import Speeds
 
 SPEED_M_S = 1.2
-SAME_TIME_S = 1e-6
 IMPULSE_MAX_N_S = 1000.0
 DURATION_MAX_S = 86400.0
 
@@ -96,9 +92,10 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.emulator import Noise
     from saddlewalk.exoskeleton import Exoskeleton
     from saddlewalk.lcmbus import open_lcm
+    from saddlewalk.schedule import schedule_of
 
     wearer = wearer_of(args, load_config(args), Noise().scaled(args.noise_scale))
-    schedule = schedule_of(args, speeds_of(args, [(0.0, SPEED_M_S)]))
+    schedule = schedule_of(speeds_of(args, [(0.0, SPEED_M_S)]), math.radians(args.hs_angle))
     lcm = open_lcm(args.lcm)
     with open_bus(args.can) as bus:
         print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
@@ -123,26 +120,13 @@ def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer"
     return Wearer(Body.of(config), noise, pushes=pushes, seed=args.seed)
 
 
-def speeds_of(args: argparse.Namespace, default: Speeds) -> Speeds:
+def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":
     """What --schedule or --speed asks for."""
     from saddlewalk.schedule import read_schedule
 
     if args.schedule:
         return [(wish.from_s, wish.speed_m_s) for wish in read_schedule(args.schedule)]
     return default if args.speed is None else [(0.0, args.speed)]
-
-
-def schedule_of(args: argparse.Namespace, speeds: Speeds) -> "Schedule":
-    from saddlewalk.core import Command
-
-    heel_strike_rad = math.radians(args.hs_angle)
-    starts_s = [from_s for from_s, _ in speeds]
-
-    def at(time_s: float) -> Command:
-        index = bisect_right(starts_s, time_s + SAME_TIME_S) - 1
-        return Command(speeds[index][1], heel_strike_rad)
-
-    return at
 
 
 def events_printer(wearer: "Wearer") -> Any:
