@@ -15,7 +15,7 @@ function(saddle_cdef name)
     list(TRANSFORM CDEF_INCLUDES PREPEND "-I")
     add_custom_command(
         OUTPUT ${CDEF_OUTPUT}
-        COMMAND ${CMAKE_C_COMPILER} -E -P -nostdinc -I${standard} ${CDEF_INCLUDES}
+        COMMAND ${CMAKE_C_COMPILER} -E -P -nostdinc -DSADDLE_DECLARATIONS_ONLY -I${standard} ${CDEF_INCLUDES}
                 -x c ${headers} /dev/null -o ${CDEF_OUTPUT}
         DEPENDS ${CDEF_HEADERS}
         COMMENT "Generating ${name}" VERBATIM)

@@ -45,11 +45,6 @@ static const float EXP_LOWEST = -87.0f;
 static const float EXP_HIGHEST = 88.0f;
 static const float ERF_SATURATION = 4.0f;
 
-float saddle_magnitude(float x)
-{
-    return x < 0.0f ? -x : x;
-}
-
 static float sin_of_eighth(float r)
 {
     const float z = r * r;
@@ -135,19 +130,6 @@ float saddle_erf(float x)
     const exp_parts_t e = exp_parts(a * poly);
     const float y = (1.0f - e.scale) - e.scale * e.fraction;
     return x < 0.0f ? -y : y;
-}
-
-float saddle_clamp(float x, float lo, float hi)
-{
-    if (x != x || x < lo) {
-        return lo;
-    }
-    return x > hi ? hi : x;
-}
-
-bool saddle_in_range(float x, float lo, float hi)
-{
-    return !(x != x || x < lo || x > hi);
 }
 
 float saddle_min_jerk(float s)

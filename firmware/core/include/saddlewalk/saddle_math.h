@@ -46,15 +46,6 @@ float saddle_erf(float x);
  */
 float saddle_exp(float x);
 
-/** |x|; NaN for NaN. */
-float saddle_magnitude(float x);
-
-/** x limited to [lo, hi], where lo <= hi; lo for NaN. */
-float saddle_clamp(float x, float lo, float hi);
-
-/** Whether x lies in [lo, hi], ends included; false for NaN. */
-bool saddle_in_range(float x, float lo, float hi);
-
 /**
  * Minimum-jerk profile 10 s^3 - 15 s^4 + 6 s^5 of s limited to [0, 1]; NaN counts as 0.
  * Exactly 0, 1/2 and 1 at s = 0, 1/2 and 1. Error at most 1.4e-7.
@@ -66,5 +57,30 @@ float saddle_min_jerk(float s);
  * Error at most 4.6e-7, relative 3.0e-7.
  */
 float saddle_min_jerk_slope(float s);
+
+#ifndef SADDLE_DECLARATIONS_ONLY /* for those who read the headers and are no compiler */
+
+/** |x|; NaN for NaN. */
+static inline float saddle_magnitude(float x)
+{
+    return x < 0.0f ? -x : x;
+}
+
+/** x limited to [lo, hi], where lo <= hi; lo for NaN. */
+static inline float saddle_clamp(float x, float lo, float hi)
+{
+    if (x != x || x < lo) {
+        return lo;
+    }
+    return x > hi ? hi : x;
+}
+
+/** Whether x lies in [lo, hi], ends included; false for NaN. */
+static inline bool saddle_in_range(float x, float lo, float hi)
+{
+    return !(x != x || x < lo || x > hi);
+}
+
+#endif
 
 #endif
