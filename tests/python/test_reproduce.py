@@ -138,6 +138,12 @@ def test_time_in_the_base_is_a_share_of_the_stride(speed, share, simulated):
     assert simulated.at(speed).share_inside("mos_xcom_m") == pytest.approx(share, abs=0.01)
 
 
+@pytest.mark.parametrize("speed", SPEEDS_M_S)
+def test_jump_is_that_at_the_saddle_itself_however_coarse_the_rows(speed, simulated):
+    coarse = simulations.simulate(speed, samples=simulations.COARSE_SAMPLES)
+    assert coarse.jump_m == pytest.approx(simulated.at(speed).jump_m, abs=2e-4)
+
+
 def test_a_number_that_is_missing_is_off():
     lost = numbers.Number("x", "", "0.10", math.nan, "m", 0.005, "eq:03", stated=True)
     assert not lost.sound
@@ -166,6 +172,13 @@ def test_status_tells_that_a_number_is_off(monkeypatch, tmp_path, capsys):
     assert "off: toe-off angle 1.6 m/s" in told
     assert "**off**" not in (page := (tmp_path / "paper.html").read_text())
     assert page.count("<strong>off</strong>") == 1
+
+
+def test_status_tells_that_a_finding_does_not_hold(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(figures, "draw_all", lambda simulations, trials: [])
+    monkeypatch.setattr(numbers, "VARIABILITY_SD", 1.0)
+    assert main(["reproduce", "--out", str(tmp_path)]) == 1
+    assert "7 of 8 findings hold; off: The vertical trajectory is acc" in capsys.readouterr().out
 
 
 def test_page_holds_every_figure_and_needs_nothing_else(reproduced):
