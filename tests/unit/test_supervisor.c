@@ -52,10 +52,10 @@ void tearDown(void) {}
 
 static uint32_t update_with(uint32_t faults)
 {
-    memset(&scores, 0xA5, sizeof scores);
-    scores.bos.defined = false; /* any bytes but in a bool, where only 0 and 1 are values */
-    scores.can_stop = false;
-    scores.paper_stable = false;
+    memset(&scores, 0xFF, sizeof scores); /* NaN, but for bools, where only 0 and 1 are values */
+    scores.bos.defined = true;
+    scores.can_stop = true;
+    scores.paper_stable = true;
     return saddle_supervisor_update(&supervisor, &config, &body, &measured, faults, DT_S, &intent,
                                     &scores, &verdict);
 }
@@ -78,6 +78,27 @@ static void strike_with(saddle_side_t side)
     update();
     measured.foot[side].contact = true;
     update();
+}
+
+/* What is not valid is 0. */
+static void assert_unscored_is_zero(void)
+{
+    const struct {
+        uint32_t valid;
+        float number;
+    } numbers[] = {
+        {SADDLE_VALID_V_COMP, scores.v_comp_m_s},   {SADDLE_VALID_STEP, scores.s_pend},
+        {SADDLE_VALID_STEP, scores.s_jump},         {SADDLE_VALID_S_SW, scores.s_sw},
+        {SADDLE_VALID_MOS_COM, scores.mos_com_m},   {SADDLE_VALID_MOS_XCOM, scores.mos_xcom_m},
+        {SADDLE_VALID_GRAVITY, scores.gravity_n.x}, {SADDLE_VALID_GRAVITY, scores.gravity_n.y},
+        {SADDLE_VALID_STOP, scores.excess_stop_j},
+        {SADDLE_VALID_STOP, scores.can_stop ? 1.0f : 0.0f},
+    };
+    for (size_t i = 0; i < COUNT_OF(numbers); i++) {
+        if ((scores.valid & numbers[i].valid) == 0u) {
+            ASSERT_SAME_FLOAT(0.0f, numbers[i].number);
+        }
+    }
 }
 
 static void test_good_measurement_has_no_fault_and_every_score_but_the_step_s(void)
@@ -130,6 +151,9 @@ static void test_each_fault_takes_the_scores_that_need_its_input(void)
             measured.com.velocity_m_s = (saddle_vec2_t){numbers[k], numbers[k]};
             TEST_ASSERT_EQUAL_HEX32(of_com[i], update_with(of_com[i]));
             TEST_ASSERT_EQUAL_HEX32(WITHOUT_COM, scores.valid);
+            ASSERT_SAME_FLOAT(0.0f, scores.xcom_m.x);
+            ASSERT_SAME_FLOAT(0.0f, scores.xcom_m.y);
+            assert_unscored_is_zero();
             assert_finite_scores();
         }
         for (size_t i = 0; i < COUNT_OF(of_feet); i++) {
@@ -138,7 +162,9 @@ static void test_each_fault_takes_the_scores_that_need_its_input(void)
             measured.foot[SADDLE_RIGHT].cop_m.y = numbers[k];
             TEST_ASSERT_EQUAL_HEX32(of_feet[i], update_with(of_feet[i]));
             TEST_ASSERT_EQUAL_HEX32(SADDLE_VALID_V_COMP, scores.valid);
-            TEST_ASSERT_FALSE(scores.can_stop || scores.paper_stable);
+            TEST_ASSERT_FALSE(scores.can_stop || scores.paper_stable || scores.bos.defined);
+            ASSERT_SAME_FLOAT(0.0f, scores.bos.radius_m);
+            assert_unscored_is_zero();
             assert_finite_scores();
         }
     }
@@ -167,6 +193,13 @@ static void test_feet_together_have_no_saddle_space(void)
     TEST_ASSERT_EQUAL_HEX32(SADDLE_VALID_V_COMP | SADDLE_VALID_S_SW, scores.valid);
     TEST_ASSERT_FALSE(scores.bos.defined);
     assert_finite_scores();
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_FEET_TOGETHER | SADDLE_FAULT_COM_STALE,
+                            update_with(SADDLE_FAULT_COM_STALE));
+    supervisor.steps.v_comp_known = true;
+    supervisor.steps.half_step_known = true;
+    supervisor.steps.v_comp_m_s = 2.5f;
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_FEET_TOGETHER | SADDLE_FAULT_SPEED_INFEASIBLE,
+                            update_with(0));
 }
 
 static void test_heel_strike_opens_the_step_scores(void)
@@ -349,9 +382,9 @@ static void test_paper_s_verdict_needs_all_three_scores_or_the_stop(void)
     };
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         const saddle_posture_t posture = {
-            .com_m = {0.0f, table[i].com_y},
+            .com_m = {0.2f, table[i].com_y + 0.5f}, /* any frame will do */
             .com_velocity_m_s = {table[i].speed_x, 0.0f},
-            .cop_m = {{0.3f, 0.05f}, {-0.3f, -0.05f}},
+            .cop_m = {{0.5f, 0.55f}, {-0.1f, 0.45f}},
             .v_comp_m_s = 1.2f,
             .half_step_m = table[i].half_step,
             .known = (uint32_t)SADDLE_KNOWN_ALL,

@@ -165,11 +165,11 @@ static const point_t ORIGIN = {0.0, 0.0};
 
 static uint32_t update(uint32_t faults)
 {
-    memset(&verdict, 0xA5, sizeof verdict);
-    verdict.compared = false; /* any bytes but in a bool, where only 0 and 1 are values */
-    verdict.on_track = false;
-    verdict.recovery.found = false;
-    verdict.recovery.stops = false;
+    memset(&verdict, 0xFF, sizeof verdict); /* NaN, but for bools, where only 0 and 1 are values */
+    verdict.compared = true;
+    verdict.on_track = true;
+    verdict.recovery.found = true;
+    verdict.recovery.stops = true;
     return saddle_supervisor_update(&supervisor, &config, &body, &measured, faults, DT_S, &intent,
                                     &scores, &verdict);
 }
@@ -297,8 +297,9 @@ static void test_recovery_is_for_what_the_cop_cannot_mend(void)
     const point_t swing = swing_foot(&walk, x);
     config.cop_shift_ap_m = 0.06f;
     config.cop_shift_ml_m = 0.02f;
+    config.recovery_follow = 1.0f; /* so that the landing tells the departure */
     for (int contact = 0; contact < 2; contact++) {
-        const state_t deviation = {{-0.04, -0.02}, {-0.1, -0.2}}; /* back, and towards that foot */
+        const state_t deviation = {{-0.14, -0.02}, {-0.2, -0.2}}; /* back, and towards that foot */
         plan(&walk, x);
         has_walked(&walk);
         measure(&walk, x, deviation);
@@ -310,6 +311,7 @@ static void test_recovery_is_for_what_the_cop_cannot_mend(void)
         assert_recovery(&walk,
                         (point_t){fmin(0.0, off.x * growth + 0.06 * (growth - 1.0) + back),
                                   fmin(0.0, off.y * growth + 0.02 * (growth - 1.0) + aside)});
+        TEST_ASSERT_TRUE(verdict.recovery.landing_m.x < (float)(2.0 * walk.half - 0.01));
     }
 }
 
@@ -540,16 +542,24 @@ static void test_planned_shift_of_weight_is_the_reference_while_it_leads(void)
     assert_verdict(SADDLE_LEVEL_CAUTION, SADDLE_REASON_XCOM_ML);
 }
 
-/* The foot on the side to which the XCoM departs makes the step. */
+/* The foot on the side to which the XCoM departs makes the step, from where it stands to as far off
+ * as the XCoM will have departed, but for what the CoP mends. */
 static void test_standing_person_steps_to_the_side_of_the_push(void)
 {
-    stand_without_a_plan(ORIGIN, (point_t){0.0, 0.3});
-    TEST_ASSERT_TRUE(verdict.recovery.found);
-    TEST_ASSERT_EQUAL_UINT8(SADDLE_LEFT, verdict.recovery.foot);
-    TEST_ASSERT_TRUE(verdict.recovery.landing_m.y > 0.22f);
-    stand_without_a_plan(ORIGIN, (point_t){0.0, -0.3});
-    TEST_ASSERT_EQUAL_UINT8(SADDLE_RIGHT, verdict.recovery.foot);
-    TEST_ASSERT_TRUE(verdict.recovery.landing_m.y < -0.22f);
+    const double growth = exp(FREQUENCY * (double)config.foresight_s);
+    config.recovery_follow = 1.0f;
+    config.cop_shift_ap_m = 0.01f;
+    config.cop_shift_ml_m = 0.02f;
+    for (int side = -1; side <= 1; side += 2) {
+        stand_without_a_plan(ORIGIN, (point_t){0.1, 0.25 * side});
+        const double ahead = 0.1 / FREQUENCY * growth - 0.01 * (growth - 1.0);
+        const double aside = 0.25 / FREQUENCY * growth - 0.02 * (growth - 1.0);
+        TEST_ASSERT_TRUE(verdict.recovery.found);
+        TEST_ASSERT_EQUAL_UINT8(side > 0 ? SADDLE_LEFT : SADDLE_RIGHT, verdict.recovery.foot);
+        TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, ahead, verdict.recovery.landing_m.x);
+        TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, side * (0.22 + aside),
+                                  verdict.recovery.landing_m.y);
+    }
 }
 
 static void test_push_of_a_standing_person_is_a_caution_and_then_unstable(void)
@@ -626,7 +636,8 @@ static void test_walk_without_a_plan_is_compared_with_its_own_last_step(void)
     }
 }
 
-/* The last half step was longer than usual at that speed: behind the stance foot it counts. */
+/* The last half step was longer than usual at that speed: behind the stance foot it counts. A step
+ * that was none, or is not known, is a usual one. */
 static void test_way_behind_the_stance_foot_is_the_last_half_step(void)
 {
     const walk_t usual = walk_at(0.9, SADDLE_LEFT);
@@ -637,9 +648,21 @@ static void test_way_behind_the_stance_foot_is_the_last_half_step(void)
     measure(&behind, -0.3, NONE);
     update(0);
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, 0.0, verdict.xcom_deviation_m.y);
-    has_walked(&usual);
+    const struct {
+        float half_step_m;
+        bool known;
+    } no_step[] = {{0.36f, false}, {0.019f, true}, {-0.2f, true}};
+    measure(&usual, -0.25, NONE);
+    for (size_t i = 0; i < COUNT_OF(no_step); i++) {
+        has_walked(&usual);
+        supervisor.steps.half_step_m = no_step[i].half_step_m;
+        supervisor.steps.half_step_known = no_step[i].known;
+        update(0);
+        TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, 0.0, verdict.xcom_deviation_m.y);
+    }
+    supervisor.steps.half_step_m = 0.021f; /* however short: the wearer is beyond its end */
     update(0);
-    TEST_ASSERT_TRUE(fabsf(verdict.xcom_deviation_m.y) > 1e-3f);
+    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, 0.021 - 0.25, verdict.xcom_deviation_m.x);
 }
 
 /* A walk of narrow steps lands narrow again, but no narrower than half the usual width, nor wider
@@ -663,7 +686,7 @@ static void test_walk_of_one_s_own_goes_on_at_its_own_width(void)
 static void test_walk_of_one_s_own_at_no_speed_is_unknown(void)
 {
     const walk_t own = walk_at(1.2, SADDLE_LEFT);
-    const float speeds[] = {-0.5f, 0.0f, 0.005f, 5.0f};
+    const float speeds[] = {-0.5f, 0.0f, 0.0099f, 3.91f};
     intent = (saddle_intent_t){.leads = false};
     for (size_t i = 0; i < COUNT_OF(speeds); i++) {
         has_walked(&own);
@@ -673,6 +696,24 @@ static void test_walk_of_one_s_own_at_no_speed_is_unknown(void)
         TEST_ASSERT_FALSE(verdict.compared);
         assert_verdict(SADDLE_LEVEL_UNKNOWN, SADDLE_REASON_NO_WALK);
     }
+    const float walked[] = {0.0101f, 3.89f};
+    for (size_t i = 0; i < COUNT_OF(walked); i++) {
+        has_walked(&own);
+        supervisor.steps.v_comp_m_s = walked[i];
+        update(0);
+        TEST_ASSERT_TRUE(verdict.compared);
+    }
+}
+
+static void test_walk_of_one_s_own_is_judged_by_its_scores(void)
+{
+    const walk_t own = walk_at(1.2, SADDLE_LEFT);
+    intent = (saddle_intent_t){.leads = false};
+    has_walked(&own);
+    supervisor.steps.half_step_m = 0.2f;
+    measure(&own, 0.1, NONE);
+    update(0);
+    assert_verdict(SADDLE_LEVEL_CAUTION, SADDLE_REASON_S_PEND);
 }
 
 /* The plan leads in its own phase: who lags behind it has departed, though at the right speed. */
@@ -695,17 +736,20 @@ static void test_wearer_who_lags_behind_the_plan_has_departed_from_it(void)
  * compared with a step at the plan's speed on the right foot; with both down, with the plan's. */
 static void test_wearer_on_another_foot_than_the_plan_is_in_a_step_of_their_own(void)
 {
-    const walk_t planned = walk_at(1.2, SADDLE_LEFT);
-    const walk_t still = walk_at(1.2, SADDLE_RIGHT);
-    plan(&planned, -planned.half);
-    has_walked(&still);
-    measure(&still, 0.3, NONE);
-    update(0);
-    TEST_ASSERT_EQUAL_UINT8(SADDLE_LEFT, verdict.recovery.foot);
-    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, 0.0, verdict.xcom_deviation_m.x);
-    measured.foot[SADDLE_LEFT].contact = true;
-    update(0);
-    TEST_ASSERT_EQUAL_UINT8(SADDLE_RIGHT, verdict.recovery.foot);
+    for (int side = 0; side < 2; side++) {
+        const saddle_side_t ahead = (saddle_side_t)side;
+        const walk_t planned = walk_at(1.2, ahead);
+        const walk_t still = walk_at(1.2, saddle_other_side(ahead));
+        plan(&planned, -planned.half);
+        has_walked(&still);
+        measure(&still, 0.3, NONE);
+        update(0);
+        TEST_ASSERT_EQUAL_UINT8(ahead, verdict.recovery.foot);
+        TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, 0.0, verdict.xcom_deviation_m.x);
+        measured.foot[ahead].contact = true;
+        update(0);
+        TEST_ASSERT_EQUAL_UINT8(saddle_other_side(ahead), verdict.recovery.foot);
+    }
 }
 
 /* ---- when a level is announced ------------------------------------------------------------- */
@@ -817,6 +861,7 @@ int main(void)
     RUN_TEST(test_way_behind_the_stance_foot_is_the_last_half_step);
     RUN_TEST(test_walk_of_one_s_own_goes_on_at_its_own_width);
     RUN_TEST(test_walk_of_one_s_own_at_no_speed_is_unknown);
+    RUN_TEST(test_walk_of_one_s_own_is_judged_by_its_scores);
     RUN_TEST(test_wearer_who_lags_behind_the_plan_has_departed_from_it);
     RUN_TEST(test_wearer_on_another_foot_than_the_plan_is_in_a_step_of_their_own);
     RUN_TEST(test_level_is_announced_once_it_has_held);
