@@ -228,10 +228,11 @@ def test_a_log_that_was_cut_says_so(walk, tmp_path, capsys):
         (bytes.fromhex("eda1da01") + bytes(range(256)), "not one event"),
     ],
 )
-def test_what_is_no_log_is_one_line(tmp_path, capsys, content, named):
+def test_what_is_no_log_is_one_line(tmp_path, capfd, content, named):
+    """LCM's own reader has words of its own, which are not told."""
     file = tmp_path / "file"
     file.write_bytes(content)
-    status, out, told = rerun(file, capsys)
+    status, out, told = rerun(file, capfd)
     assert (status, out, told.count("\n")) == (2, "", 1)
     assert str(file) in told and named in told
 
@@ -311,6 +312,15 @@ def test_frames_that_the_host_refused_are_refused_again(walk, tmp_path, capsys):
     status, told, _ = rerun(
         can_log(tmp_path / "junk.log", frames[:44] + junk + frames[44:]), capsys
     )
+    assert status == 0, told
+
+
+def test_a_command_that_cannot_be_used_is_not_used_again(walk, tmp_path, capsys):
+    frames = frames_of(walk)
+    command = [frame for frame in frames if frame.arbitration_id == 0x100][90]
+    command.data[2:4] = b"\x00\x80"  # the speed: not available
+    command.data[0] = wire.frame_crc(0x100, command.data)
+    status, told, _ = rerun(can_log(tmp_path / "walk.log", frames), capsys)
     assert status == 0, told
 
 
