@@ -126,6 +126,19 @@ def steps(placed: list[Placement]) -> tuple[np.ndarray, np.ndarray]:
     return np.array(lengths_m), np.array(widths_m)
 
 
+def passing(recording: Recording, foot: Placement) -> tuple[int, float] | None:
+    """When the CoM passes a foot: the first sample past it, and the time between it and the last.
+
+    None if the trial begins later or ends before.
+    """
+    past = np.flatnonzero(recording.com_m[:, 0] >= foot.cop_m[0])
+    if not len(past) or past[0] == 0:
+        return None
+    pair = slice(past[0] - 1, past[0] + 1)
+    time_s = np.interp(foot.cop_m[0], recording.com_m[pair, 0], recording.time_s[pair])
+    return int(past[0]), float(time_s)
+
+
 def _between_events(samples: int, foot: FootEvents) -> np.ndarray:
     order = sorted(
         [(index, True) for index in foot.heel_strikes] + [(index, False) for index in foot.toe_offs]

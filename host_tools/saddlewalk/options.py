@@ -55,3 +55,19 @@ def add_gait_options(parser: argparse.ArgumentParser, default_pace: str | None =
         metavar="DEG",
         help="foot angle at heel strike (default 10)",
     )
+
+
+def add_recordings(parser: argparse.ArgumentParser) -> None:
+    """RECORDING... and --markers, for load_walk()."""
+    parser.add_argument(
+        "recordings",
+        nargs="+",
+        metavar="RECORDING",
+        help="a steady walk: .c3d, .trc, or CSV with t, com_x ... rtoe_z in s and m",
+    )
+    parser.add_argument(
+        "--markers",
+        metavar="FILE",
+        help="TOML with the markers of front, rear, left_heel, left_toe, right_heel, right_toe "
+        "where a C3D or TRC file does not use a usual name",
+    )

@@ -5,8 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from saddlewalk.errors import UserError
-from saddlewalk.gait_events import FootEvents, Placement, foot_events, mean_speed, placements
-from saddlewalk.gait_events import step_pairs as pairs_of
+from saddlewalk.gait_events import (
+    FootEvents,
+    Placement,
+    foot_events,
+    mean_speed,
+    passing,
+    placements,
+    step_pairs,
+)
 from saddlewalk.recording import Recording
 
 # Means of a walking person, from a child of two to the tallest adult.
@@ -34,7 +41,7 @@ class WalkMeasures:
     length_m: np.ndarray  # between placements
     width_m: np.ndarray  # between placements, left minus right
     vertical_m: np.ndarray  # peak to peak from heel strike to heel strike
-    lateral_m: np.ndarray  # of the sway in the stride that the step begins
+    lateral_m: np.ndarray  # of the sway, as far as it is largest beside the stance foot
     com_top_m: np.ndarray  # greatest height
     half_foot_m: np.ndarray  # one a placement: heel to middle of the metatarsus, halved
     missing: dict[str, str]  # quantity -> why the recording does not tell it
@@ -44,14 +51,12 @@ def measure(recording: Recording) -> WalkMeasures:
     """Raises UserError for what is no walk or, by name, for a mean that no human has."""
     events = (foot_events(recording, 0), foot_events(recording, 1))
     placed = placements(recording)
-    pairs = pairs_of(placed)
+    pairs = step_pairs(placed)
     runs = _strikes_in_turn(recording, events)
-    high_m = _com_between(
-        recording, 2, [run[i : i + 2] for run in runs for i in range(len(run) - 1)]
-    )
-    aside_m = _com_between(
-        recording, 1, [run[i : i + 3 : 2] for run in runs for i in range(len(run) - 2)]
-    )
+    spans = [run[i : i + 2] for run in runs for i in range(len(run) - 1)]
+    heights_m = [recording.com_m[first : end + 1, 2] for first, end in spans]
+    high_m = [z_m for z_m in heights_m if np.isfinite(z_m).all()]
+    sways_m = _sways_m(recording, placed)
     grounded = _heels_on_ground(recording, placed)
     measures = WalkMeasures(
         source=recording.source,
@@ -60,10 +65,10 @@ def measure(recording: Recording) -> WalkMeasures:
         length_m=np.array([to.cop_m[0] - stance.cop_m[0] for stance, to in pairs]),
         width_m=np.array([_width_m(stance, to) for stance, to in pairs]),
         vertical_m=np.array([np.ptp(z_m) for z_m in high_m]),
-        lateral_m=np.array([_sway_m(y_m) for y_m in aside_m]),
+        lateral_m=sways_m,
         com_top_m=np.array([z_m.max() for z_m in high_m] if grounded else []),
         half_foot_m=_half_foot_m(recording, placed),
-        missing=_missing(recording, bool(pairs), bool(high_m), bool(aside_m), grounded),
+        missing=_missing(recording, bool(pairs), bool(high_m), len(sways_m) > 0, grounded),
     )
     _refuse_inhuman(measures)
     return measures
@@ -98,7 +103,7 @@ def _missing(
 ) -> dict[str, str]:
     """Quantity -> reason."""
     step = "no step from heel strike to heel strike with the CoM seen all the way"
-    stride = "no stride of three heel strikes with the CoM seen all the way"
+    stride = "no stride from passing a foot to passing it again with the CoM seen all the way"
     flat = "no two successive feet lay flat"
     toes = "not both toes were seen" if not _both_seen(recording.toe_m) else None
     reasons = {
@@ -140,23 +145,31 @@ def _longer(recording: Recording, first: int, end: int) -> bool:
     return bool(recording.time_s[end] - recording.time_s[first] > LONGEST_STEP_S)
 
 
-def _com_between(recording: Recording, axis: int, spans: list[list[int]]) -> list[np.ndarray]:
-    """The CoM's coordinate in those spans, ends included, in which it was seen all the way."""
-    parts = [recording.com_m[first : end + 1, axis] for first, end in spans]
-    return [part for part in parts if np.isfinite(part).all()]
-
-
 def _width_m(stance: Placement, to: Placement) -> float:
     return (stance.cop_m[1] - to.cop_m[1]) * (1 if stance.side == 0 else -1)
 
 
-def _sway_m(y_m: np.ndarray) -> float:
-    """Amplitude of one period, fitted beside an offset and a drift of the walk."""
-    share = np.linspace(0, 1, len(y_m))
+def _sways_m(recording: Recording, placed: list[Placement]) -> np.ndarray:
+    """One for each stride from passing a foot to passing it again, least squares in the plan's
+    phase: recorded CoMs sway farthest a little later, which the plan can't follow."""
+    sways_m = []
+    for stance, other, again in zip(placed, placed[1:], placed[2:], strict=False):
+        passed, passed_again = passing(recording, stance), passing(recording, again)
+        if stance.side == other.side or stance.side != again.side or not passed or not passed_again:
+            continue
+        (first, start_s), (end, end_s) = passed, passed_again
+        y_m = recording.com_m[first:end, 1]
+        if 0 < end_s - start_s <= 2 * LONGEST_STEP_S and np.isfinite(y_m).all():
+            share = (recording.time_s[first:end] - start_s) / (end_s - start_s)
+            sways_m.append(_cosine_m(share, y_m) * (1 if stance.side == 0 else -1))
+    return np.array(sways_m)
+
+
+def _cosine_m(share: np.ndarray, y_m: np.ndarray) -> float:
+    """Of one period, fitted beside a sine and the offset and drift of the walk."""
     angle = 2 * np.pi * share
-    shapes = np.stack([np.ones_like(share), share, np.cos(angle), np.sin(angle)], axis=1)
-    fitted, *_ = np.linalg.lstsq(shapes, y_m)
-    return float(np.hypot(fitted[2], fitted[3]))
+    shapes = np.stack([np.cos(angle), np.sin(angle), np.ones_like(share), share], axis=1)
+    return float(np.linalg.lstsq(shapes, y_m)[0][0])
 
 
 def _heels_on_ground(recording: Recording, placed: list[Placement]) -> bool:

@@ -1,0 +1,125 @@
+"""`saddlewalk calibrate`: a person's gait model from recorded walks."""
+
+import argparse
+import math
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from saddlewalk.options import add_recordings, number_in
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from saddlewalk.calibration import Fit
+    from saddlewalk.walk_measures import WalkMeasures
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser(
+        "calibrate",
+        help="fit the gait model to a person's recorded walks",
+        description="Fit the gait model to one person's recorded walks, each at a steady speed. "
+        "Speeds that differ by 0.2 m/s or more give regressions of the person's own; with one "
+        "speed the paper's slopes are kept.",
+    )
+    add_recordings(parser)
+    parser.add_argument(
+        "--height",
+        type=number_in(0.7, 2.5, "m"),
+        metavar="M",
+        help="body height, m (default: from the height of the CoM)",
+    )
+    parser.add_argument(
+        "--mass", type=number_in(5, 300, "kg"), metavar="KG", help="body mass, kg (default 63.3)"
+    )
+    parser.add_argument(
+        "--out",
+        default="-",
+        metavar="FILE",
+        help="the gait model as TOML, for --config (default: standard output)",
+    )
+    parser.add_argument("--header", metavar="FILE", help="the same as a C header, for firmware")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    from rich.console import Console
+
+    from saddlewalk.calibration import calibrate, checked
+    from saddlewalk.motion_capture import load_walk, read_markers
+    from saddlewalk.person_file import header_text, toml_text
+    from saddlewalk.table import write_text
+    from saddlewalk.walk_measures import measure
+
+    markers = read_markers(Path(args.markers)) if args.markers else {}
+    walks = [measure(load_walk(source, markers)) for source in args.recordings]
+    fits = calibrate(walks, args.height, args.mass)
+    config = checked(fits)
+    sources = [walk.source for walk in walks]
+    write_text("--out", args.out, toml_text(fits, sources))
+    if args.header:
+        write_text("--header", args.header, header_text(fits, sources, args.header))
+    console = Console(file=sys.stderr if "-" in (args.out, args.header) else sys.stdout)
+    console.print(_walk_table(walks))
+    console.print(_fit_table(fits))
+    for line in (*_not_told(walks), *_too_fast(walks, config)):
+        console.print(line, markup=False, highlight=False, soft_wrap=True)
+    return 0
+
+
+def _walk_table(walks: "list[WalkMeasures]") -> Any:
+    from rich.box import SIMPLE
+    from rich.markup import escape
+    from rich.table import Table
+
+    table = Table(box=SIMPLE, title="Measured: speed in m/s; mean ± deviation of the steps in mm")
+    table.add_column("recording", overflow="fold")
+    for name in ("speed", "steps", "length", "width", "vertical", "lateral"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for walk in walks:
+        per_step = (walk.length_m, walk.width_m, walk.vertical_m, walk.lateral_m)
+        table.add_row(
+            escape(walk.source),
+            f"{walk.speed_m_s:.3f}",
+            str(len(walk.length_m)),
+            *(_mean_and_deviation(values) for values in per_step),
+        )
+    return table
+
+
+def _fit_table(fits: "list[Fit]") -> Any:
+    from rich.box import SIMPLE
+    from rich.table import Table
+
+    table = Table(box=SIMPLE, title="Fitted")
+    for name in ("quantity", "steps", "R²", "remark"):
+        table.add_column(name, justify="right" if name in ("steps", "R²") else "left")
+    for fit in fits:
+        r2 = "" if math.isnan(fit.r2) else f"{fit.r2:.2f}"
+        table.add_row(fit.quantity, str(fit.steps or "none"), r2, fit.note)
+    return table
+
+
+def _not_told(walks: "list[WalkMeasures]") -> list[str]:
+    return [
+        f"{walk.source} does not tell the {quantity}: {reason}"
+        for walk in walks
+        for quantity, reason in walk.missing.items()
+    ]
+
+
+def _too_fast(walks: "list[WalkMeasures]", config: Any) -> list[str]:
+    from saddlewalk.core import library
+
+    ceiling_m_s = library().saddle_body(config).speed_ceiling_m_s
+    return [
+        f"{walk.source}: {walk.speed_m_s:.3g} m/s is above the fitted gait's ceiling, "
+        f"{ceiling_m_s:.3g} m/s: a plan at it is limited"
+        for walk in walks
+        if walk.speed_m_s >= ceiling_m_s
+    ]
+
+
+def _mean_and_deviation(values: "np.ndarray") -> str:
+    return f"{1e3 * values.mean():.0f} ± {1e3 * values.std():.0f}" if len(values) else "-"
