@@ -5,6 +5,7 @@
  *                             the tests; with a seed, that schedule (or COUNT from it on)
  *   day                       24 hours at random speeds against a twin in double precision
  *   constant                  an hour at each of 20 speeds against the closed form
+ *   followers                 wearers who are where the plan is: the supervisor believes them
  *
  * Exit status 0 if all held, 1 if something failed, 2 for a wrong argument.
  */
@@ -17,7 +18,7 @@
 
 static int usage(void)
 {
-    fprintf(stderr, "test_walks: expected schedules [SEED [COUNT]], day or constant\n");
+    fprintf(stderr, "test_walks: expected schedules [SEED [COUNT]], day, constant or followers\n");
     return 2;
 }
 
@@ -50,6 +51,9 @@ int main(int argc, char **argv)
     }
     if (argc == 2 && strcmp(argv[1], "constant") == 0) {
         return check_constant() == 0 ? 0 : 1;
+    }
+    if (argc == 2 && strcmp(argv[1], "followers") == 0) {
+        return check_followers() == 0 ? 0 : 1;
     }
     return usage();
 }

@@ -14,6 +14,7 @@
 int check_schedules(uint64_t first_seed, uint64_t count);
 int check_day(void);
 int check_constant(void);
+int check_followers(void);
 
 /** xorshift64*: state must not be 0. */
 static inline uint64_t random_bits(uint64_t *state)
