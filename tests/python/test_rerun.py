@@ -1,5 +1,6 @@
 """`saddlewalk rerun`: a log gives the same bits again, and what is not the same is named."""
 
+import os
 import random
 import shutil
 import subprocess
@@ -11,7 +12,7 @@ import lcm
 import pytest
 
 from host_node import own_lcm
-from saddlewalk import wire
+from saddlewalk import paths, wire
 from saddlewalk.bus import private_udp
 from saddlewalk.cli import main
 from saddlewalk.logs import load_lcm_log
@@ -347,6 +348,7 @@ def test_nothing_of_this_machine_is_asked(walk, tmp_path):
     done = subprocess.run(
         ["unshare", "--user", "--net", str(script), "rerun", log],
         cwd=tmp_path,
+        env=os.environ | {"SADDLEWALK_BUILD": str(paths.build_dir().absolute())},
         capture_output=True,
         text=True,
         check=False,
