@@ -56,7 +56,7 @@ def measure(recording: Recording) -> WalkMeasures:
     spans = [run[i : i + 2] for run in runs for i in range(len(run) - 1)]
     heights_m = [recording.com_m[first : end + 1, 2] for first, end in spans]
     high_m = [z_m for z_m in heights_m if np.isfinite(z_m).all()]
-    sways_m = _sways_m(recording, placed)
+    sways_m, no_sway = _sways(recording, placed)
     grounded = _heels_on_ground(recording, placed)
     measures = WalkMeasures(
         source=recording.source,
@@ -68,7 +68,7 @@ def measure(recording: Recording) -> WalkMeasures:
         lateral_m=sways_m,
         com_top_m=np.array([z_m.max() for z_m in high_m] if grounded else []),
         half_foot_m=_half_foot_m(recording, placed),
-        missing=_missing(recording, bool(pairs), bool(high_m), len(sways_m) > 0, grounded),
+        missing=_missing(recording, bool(pairs), bool(high_m), grounded) | no_sway,
     )
     _refuse_inhuman(measures)
     return measures
@@ -98,20 +98,17 @@ def _refuse_inhuman(measures: WalkMeasures) -> None:
             refuse(measures.source, quantity, float(np.mean(values)))
 
 
-def _missing(
-    recording: Recording, placed: bool, high: bool, aside: bool, grounded: bool
-) -> dict[str, str]:
-    """Quantity -> reason."""
+def _missing(recording: Recording, placed: bool, high: bool, grounded: bool) -> dict[str, str]:
+    """Quantity -> reason, but for the sway."""
     step = "no step from heel strike to heel strike with the CoM seen all the way"
-    stride = "no stride from passing a foot to passing it again with the CoM seen all the way"
     flat = "no two successive feet lay flat"
+    off_ground = "the heels do not stand at z = 0"
     toes = "not both toes were seen" if not _both_seen(recording.toe_m) else None
     reasons = {
         "step length": None if placed else toes or flat,
         "step width": None if placed else toes or flat,
         "vertical amplitude": None if high else step,
-        "lateral amplitude": None if aside else stride,
-        "CoM height": step if not high else None if grounded else "the heels do not stand at z = 0",
+        "CoM height": step if not high else None if grounded else toes or off_ground,
         "half the foot": toes or _one_point(recording),
     }
     return {quantity: reason for quantity, reason in reasons.items() if reason is not None}
@@ -122,7 +119,7 @@ def _both_seen(points_m: np.ndarray) -> bool:
 
 
 def _one_point(recording: Recording) -> str | None:
-    apart_m = np.nanmedian(np.abs(recording.toe_m - recording.heel_m))
+    apart_m = np.nanmedian(np.linalg.norm(recording.toe_m - recording.heel_m, axis=2))
     return "heel and toe are one point" if apart_m < ONE_POINT_M else None
 
 
@@ -149,9 +146,12 @@ def _width_m(stance: Placement, to: Placement) -> float:
     return (stance.cop_m[1] - to.cop_m[1]) * (1 if stance.side == 0 else -1)
 
 
-def _sways_m(recording: Recording, placed: list[Placement]) -> np.ndarray:
-    """One for each stride from passing a foot to passing it again, least squares in the plan's
-    phase: recorded CoMs sway farthest a little later, which the plan can't follow."""
+def _sways(recording: Recording, placed: list[Placement]) -> tuple[np.ndarray, dict[str, str]]:
+    """One for each stride from passing a foot to passing it again, or why there is none.
+
+    Least squares in the plan's phase: recorded CoMs sway farthest a little later, which the plan
+    can't follow.
+    """
     sways_m = []
     for stance, other, again in zip(placed, placed[1:], placed[2:], strict=False):
         passed, passed_again = passing(recording, stance), passing(recording, again)
@@ -162,7 +162,13 @@ def _sways_m(recording: Recording, placed: list[Placement]) -> np.ndarray:
         if 0 < end_s - start_s <= 2 * LONGEST_STEP_S and np.isfinite(y_m).all():
             share = (recording.time_s[first:end] - start_s) / (end_s - start_s)
             sways_m.append(_cosine_m(share, y_m) * (1 if stance.side == 0 else -1))
-    return np.array(sways_m)
+    if not sways_m:
+        why = "no stride from passing a foot to passing it again with the CoM seen all the way"
+    elif np.mean(sways_m) < HUMAN["lateral amplitude"][0]:
+        why = "the CoM is not nearer to the foot that it passes than before and after"
+    else:
+        return np.array(sways_m), {}
+    return np.array([]), {"lateral amplitude": why}
 
 
 def _cosine_m(share: np.ndarray, y_m: np.ndarray) -> float:

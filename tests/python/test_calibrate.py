@@ -1,0 +1,530 @@
+"""calibrate and follow: the core's own walks come back as the configuration they were made with;
+laboratories' files, missing markers, nonsense; the TOML and the C header that come out."""
+
+import argparse
+import dataclasses
+import math
+import shutil
+import subprocess
+import tomllib
+
+import numpy as np
+import pytest
+
+from saddlewalk.cli import main, parser
+from saddlewalk.commands.plan import walk as planned
+from saddlewalk.config import ANKLES, configuration, host_arguments, load_config
+from saddlewalk.core import Core, field_ranges
+from saddlewalk.errors import UserError
+from saddlewalk.motion_capture import load_walk
+from saddlewalk.paths import CHECKOUT, built
+from saddlewalk.recording import Recording
+from saddlewalk.table import read_table
+from saddlewalk.walk_measures import measure
+from synthetic_walk import Walk, csv_text
+
+PERSON = {
+    "body_height_m": 1.62,
+    "body_mass_kg": 55.0,
+    "cop_range_m": 0.085,
+    "step_width_slow_m": 0.162,
+    "step_width_fast_m": 0.114,
+    "step_width_slow_speed_m_s": 0.7,
+    "step_width_fast_speed_m_s": 1.3,
+    "step_width_slope_s": -0.08,
+    "step_width_intercept_m": 0.218,
+    "half_step_slope_s": 0.15,
+    "half_step_intercept_m": 0.13,
+    "vertical_slope_s": 0.03,
+    "vertical_intercept_m": 0.004,
+    "lateral_factor": 0.8,
+    "step_length_factor_left": 1.04,
+    "step_length_factor_right": 0.96,
+}
+SPEEDS_M_S = (0.7, 1.0, 1.3)
+RATE_HZ = 200
+
+# What is left: one step more of the longer side in a walk; an uneven walk sways by no pure cosine.
+TOLERANCE = {"half_step_slope_s": 2e-3, "half_step_intercept_m": 2e-3, "lateral_factor": 4e-3}
+
+# Laboratory axes as rows of forward, left and up: x sideways and z up, or y up.
+LABORATORIES = {
+    "z up, walking along -y": ((0, -1, 0), (1, 0, 0), (0, 0, 1)),
+    "y up, walking along x": ((1, 0, 0), (0, 0, -1), (0, 1, 0)),
+}
+
+
+def walk_of(fields: dict[str, float], speed_m_s: float, duration_s: float = 9.0) -> Recording:
+    """The core's walk as if it had been recorded: heel and toe d_h behind and ahead of the CoP."""
+    config = configuration({**fields, "ankle": ANKLES["cycloid"]})
+    com_m, foot_m = [], ([], [])
+    for _, (time_s, output) in zip(
+        range(round(duration_s * RATE_HZ)),
+        planned(Core(config), speed_m_s, 10, 1 / RATE_HZ),
+        strict=False,
+    ):
+        plan, origin_m = output.plan, output.plan.origin_x_nm * 1e-9
+        com_m.append((time_s, origin_m + plan.com_m.x, plan.com_m.y, plan.com_m.z))
+        for side, foot in enumerate(plan.foot_m):
+            foot_m[side].append((origin_m + foot.x, foot.y, foot.z))
+    half_foot_m = np.array([config.cop_range_m, 0, 0])
+    return Recording(
+        source=f"{speed_m_s} m/s",
+        time_s=np.array(com_m)[:, 0],
+        com_m=np.array(com_m)[:, 1:],
+        heel_m=np.array(foot_m) - half_foot_m,
+        toe_m=np.array(foot_m) + half_foot_m,
+    )
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Write a recording as CSV; its path."""
+
+    def to_csv(recording: Recording, name: str = "walk.csv") -> str:
+        path = tmp_path / name
+        path.write_text(csv_text(recording))
+        return str(path)
+
+    return to_csv
+
+
+def calibrated(tmp_path, *arguments: str) -> dict[str, float]:
+    out = tmp_path / "person.toml"
+    assert main(["calibrate", *arguments, "--out", str(out)]) == 0
+    return tomllib.loads(out.read_text())
+
+
+def refusal(capsys, *arguments: str) -> str:
+    assert main(list(arguments)) == 2
+    printed = capsys.readouterr()
+    assert printed.err.count("\n") == 1
+    return printed.err
+
+
+def test_a_plan_s_own_walks_give_back_its_configuration(write, tmp_path):
+    walks = [write(walk_of(PERSON, v), f"{v}.csv") for v in SPEEDS_M_S]
+    found = calibrated(tmp_path, *walks, "--mass", "55")
+    assert set(found) == set(PERSON)
+    for name, value in PERSON.items():
+        assert found[name] == pytest.approx(value, abs=TOLERANCE.get(name, 1e-4)), name
+    text = (tmp_path / "person.toml").read_text()
+    assert "step length: 47 steps, R2 0.91" in text
+
+
+def test_one_speed_fits_the_offsets_and_keeps_the_paper_s_slopes(write, tmp_path):
+    found = calibrated(tmp_path, write(walk_of(PERSON, 1.0)))
+    paper = configuration({})
+    for name in ("half_step_slope_s", "vertical_slope_s", "step_width_slope_s"):
+        assert found[name] == pytest.approx(getattr(paper, name))
+    assert found["half_step_slope_s"] + found["half_step_intercept_m"] == pytest.approx(
+        0.28, abs=2e-3
+    )
+    assert found["vertical_slope_s"] + found["vertical_intercept_m"] == pytest.approx(
+        0.034, abs=5e-4
+    )
+    assert found["step_width_slope_s"] + found["step_width_intercept_m"] == pytest.approx(
+        0.138, abs=5e-4
+    )
+    shift_m = found["step_width_slow_m"] - paper.step_width_slow_m
+    assert shift_m == pytest.approx(found["step_width_fast_m"] - paper.step_width_fast_m, abs=1e-6)
+
+
+def test_offset_width_never_gets_narrower_than_the_core_walks(write, tmp_path):
+    fields = {"step_width_slow_m": 0.05, "step_width_slow_speed_m_s": 0.9}
+    narrow = {**fields, "step_width_fast_speed_m_s": 0.95}
+    found = calibrated(tmp_path, write(walk_of(narrow, 0.6)))
+    assert found["step_width_slope_s"] * 0.6 + found["step_width_intercept_m"] == pytest.approx(
+        0.05, abs=1e-3
+    )
+    assert found["step_width_fast_m"] == 0.02
+    end_m = (
+        found["step_width_slope_s"] * found["step_width_fast_speed_m_s"]
+        + found["step_width_intercept_m"]
+    )
+    assert end_m == pytest.approx(0.02, abs=1e-6)
+
+
+def test_intercept_that_would_be_negative_is_zero_and_the_slope_follows(write, tmp_path):
+    flat = {"vertical_slope_s": 0.01, "vertical_intercept_m": 0.0}
+    found = calibrated(tmp_path, write(walk_of(flat, 1.2)))
+    assert found["vertical_intercept_m"] == 0
+    assert found["vertical_slope_s"] == pytest.approx(0.01, abs=5e-4)
+
+
+def test_sway_beyond_tangency_is_bounded_by_it(write, tmp_path):
+    walk = walk_of({}, 1.2)
+    wide = dataclasses.replace(walk, com_m=walk.com_m * (1, 5, 1))
+    found = calibrated(tmp_path, write(wide))
+    assert found["lateral_factor"] == pytest.approx(2 * 1.2, rel=0.01)
+    assert "beyond tangency" in (tmp_path / "person.toml").read_text()
+
+
+def test_height_given_fits_the_pendulum_s_ratio(write, tmp_path):
+    found = calibrated(tmp_path, write(walk_of(PERSON, 1.0)), "--height", "1.7")
+    assert found["body_height_m"] == 1.7
+    assert found["pendulum_ratio"] == pytest.approx(0.57 * 1.62 / 1.7, abs=1e-3)
+
+
+def test_sway_is_fitted_beside_drift_and_offset():
+    walk = walk_of({}, 1.0)
+    drift_m = 0.3 + 0.02 * walk.time_s
+    moved = dataclasses.replace(walk, com_m=walk.com_m + np.outer(drift_m, (0, 1, 0)))
+    assert measure(moved).lateral_m == pytest.approx(0.1328 / (2 * math.pi), abs=2e-4)
+
+
+def laboratory(recording: Recording, rows: tuple, belt_m_s: float = 0.0) -> dict[str, np.ndarray]:
+    """Plug-in Gait markers, (n, 3) in mm and the laboratory's axes."""
+    back_m = np.outer(belt_m_s * recording.time_s, (1, 0, 0))
+    aside_m, ahead_m = np.array([0, 0.12, 0]), np.array([0.09, 0, 0])
+    points_m = {
+        "Ann:LASI": recording.com_m + ahead_m + aside_m,
+        "Ann:RASI": recording.com_m + ahead_m - aside_m,
+        "Ann:LPSI": recording.com_m - ahead_m + aside_m / 2,
+        "Ann:RPSI": recording.com_m - ahead_m - aside_m / 2,
+        "Ann:LHEE": recording.heel_m[0],
+        "Ann:RHEE": recording.heel_m[1],
+        "Ann:LTOE": recording.toe_m[0],
+        "Ann:RTOE": recording.toe_m[1],
+    }
+    return {name: 1e3 * (xyz_m - back_m) @ np.array(rows) for name, xyz_m in points_m.items()}
+
+
+def c3d_file(path, markers: dict[str, np.ndarray]) -> str:
+    ezc3d = pytest.importorskip("ezc3d")
+    trial = ezc3d.c3d()
+    point = trial["parameters"]["POINT"]
+    point["RATE"]["value"] = [float(RATE_HZ)]
+    point["UNITS"]["value"] = ["mm"]
+    point["LABELS"]["value"] = list(markers)
+    points = np.stack(list(markers.values()), axis=0).transpose(2, 0, 1)
+    trial["data"]["points"] = np.concatenate([points, np.ones((1, *points.shape[1:]))])
+    trial.write(str(path))
+    return str(path)
+
+
+def trc_file(path, markers: dict[str, np.ndarray]) -> str:
+    table = np.concatenate(list(markers.values()), axis=1)
+    frames = [
+        "\t".join([str(i + 1), f"{i / RATE_HZ:.4f}", *("" if x != x else f"{x:.5f}" for x in row)])
+        for i, row in enumerate(table)
+    ]
+    head = [
+        f"PathFileType\t4\t(X/Y/Z)\t{path.name}",
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate",
+        f"{RATE_HZ}\t{RATE_HZ}\t{len(table)}\t{len(markers)}\tmm\t{RATE_HZ}",
+        "Frame#\tTime\t" + "\t\t\t".join(markers),
+        "\t\t" + "\t".join(f"{axis}{i + 1}" for i in range(len(markers)) for axis in "XYZ"),
+        "",
+    ]
+    path.write_text("\n".join([*head, *frames, ""]))
+    return str(path)
+
+
+WRITERS = {"c3d": c3d_file, "trc": trc_file}
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+@pytest.mark.parametrize("rows", LABORATORIES.values(), ids=LABORATORIES)
+@pytest.mark.parametrize("belt_m_s", [0.0, 1.0])
+def test_laboratory_file_is_the_walk_in_the_task_frame(kind, rows, belt_m_s, tmp_path):
+    walk = walk_of(PERSON, 1.0)
+    source = WRITERS[kind](tmp_path / f"walk.{kind}", laboratory(walk, rows, belt_m_s))
+    loaded = load_walk(source)
+    origin_m = walk.com_m[0] * (1, 1, 0)
+    along = walk.com_m[-1, :2] - walk.com_m[0, :2]
+    turned = math.atan2(along[1], along[0]) if not belt_m_s else 0.0  # forward is the way gone
+    assert abs(turned) < 0.01
+    # The belt's speed is known to a few mm/s from feet that roll on it.
+    tolerance_m = 0.002 + abs(turned) * 10 + (0.005 * walk.time_s[-1] if belt_m_s else 0)
+    for found, true in ((loaded.com_m, walk.com_m), *zip(loaded.heel_m, walk.heel_m, strict=True)):
+        assert found == pytest.approx(true - origin_m, abs=tolerance_m)
+    assert loaded.time_s == pytest.approx(walk.time_s - walk.time_s[0], abs=1e-4)
+    assert ("treadmill at 1 m/s" in loaded.source) == bool(belt_m_s)
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+def test_laboratory_file_calibrates_as_the_csv_does(kind, write, tmp_path):
+    walk = walk_of(PERSON, 1.0)
+    markers = laboratory(walk, LABORATORIES["z up, walking along -y"])
+    source = WRITERS[kind](tmp_path / f"walk.{kind}", markers)
+    expected = calibrated(tmp_path, write(walk))
+    assert calibrated(tmp_path, source) == pytest.approx(expected, abs=2e-3)
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+def test_marker_that_was_not_seen_is_missing(kind, tmp_path):
+    markers = laboratory(walk_of(PERSON, 1.0), LABORATORIES["z up, walking along -y"])
+    markers["Ann:LHEE"][100:120] = np.nan
+    loaded = load_walk(WRITERS[kind](tmp_path / f"walk.{kind}", markers))
+    assert np.isnan(loaded.heel_m[0, 100:120]).all()
+    assert np.isfinite(loaded.heel_m[0, 120:]).all()
+    assert np.isfinite(loaded.heel_m[1]).all()
+
+
+def test_markers_are_named_by_a_mapping_file(tmp_path, capsys):
+    rename = {"Ann:LASI": "hip a", "Ann:RASI": "hip b", "Ann:LTOE": "C7"}
+    markers = laboratory(walk_of(PERSON, 1.0), LABORATORIES["z up, walking along -y"])
+    source = trc_file(
+        tmp_path / "walk.trc", {rename.get(name, name): xyz for name, xyz in markers.items()}
+    )
+    assert "no markers for front" in refusal(capsys, "calibrate", source)
+    mapping = tmp_path / "markers.toml"
+    mapping.write_text('front = ["hip a", "Hip B"]\nleft_toe = ["C7"]\n')
+    found = calibrated(tmp_path, source, "--markers", str(mapping))
+    assert found["half_step_slope_s"] + found["half_step_intercept_m"] == pytest.approx(
+        0.28, abs=2e-3
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("front = [", "not TOML"),
+        ('nose = ["A"]', "nose is not one of front, rear"),
+        ('front = "LASI"', "front = 'LASI' must be a list"),
+        ("front = []", "must be a list"),
+        ('front = ["NOSE"]', "no markers for front: NOSE"),
+    ],
+)
+def test_bad_mapping_is_named(text, named, tmp_path, capsys):
+    markers = laboratory(walk_of(PERSON, 1.0, 3.0), LABORATORIES["z up, walking along -y"])
+    source = trc_file(tmp_path / "walk.trc", markers)
+    mapping = tmp_path / "markers.toml"
+    mapping.write_text(text)
+    assert named in refusal(capsys, "calibrate", source, "--markers", str(mapping))
+
+
+def test_without_toes_the_steps_are_not_told_and_the_rest_is(tmp_path, capsys):
+    markers = laboratory(walk_of(PERSON, 1.0), LABORATORIES["z up, walking along -y"])
+    del markers["Ann:LTOE"], markers["Ann:RTOE"]
+    found = calibrated(tmp_path, trc_file(tmp_path / "walk.trc", markers))
+    assert set(found) == {"body_height_m", "vertical_slope_s", "vertical_intercept_m"}
+    printed = capsys.readouterr().out
+    assert "walk.trc does not tell the step length: not both toes were seen" in printed
+    assert "walk.trc does not tell the half the foot: not both toes were seen" in printed
+
+
+def moved(walk: Recording, **offset_m: np.ndarray) -> Recording:
+    return dataclasses.replace(
+        walk, **{name: getattr(walk, name) + by_m for name, by_m in offset_m.items()}
+    )
+
+
+def test_what_a_recording_does_not_tell_is_said_with_the_reason(write, tmp_path, capsys):
+    walk = walk_of(PERSON, 1.0)
+    up = np.array([0, 0, 1.0])
+    calibrated(tmp_path, write(moved(walk, com_m=up, heel_m=up, toe_m=up)))
+    assert "CoM height: the heels do not stand at z = 0" in capsys.readouterr().out
+    calibrated(tmp_path, write(dataclasses.replace(walk, toe_m=walk.heel_m)))
+    assert "half the foot: heel and toe are one point" in capsys.readouterr().out
+    calibrated(tmp_path, write(dataclasses.replace(walk, com_m=walk.com_m * (1, -1, 1))))
+    assert "lateral amplitude: the CoM is not nearer to the foot" in capsys.readouterr().out
+    short = walk_of(PERSON, 1.0, 1.4)
+    assert "lateral_factor" not in calibrated(tmp_path, write(short))
+    printed = capsys.readouterr().out
+    assert "lateral amplitude: no stride from passing a foot" in printed
+    assert "3 each are needed" in printed
+
+
+def test_height_of_the_com_not_seen_leaves_the_transverse_plane(write, tmp_path, capsys):
+    walk = walk_of(PERSON, 1.0)
+    walk.com_m[:, 2] = np.nan
+    found = calibrated(tmp_path, write(walk))
+    assert "vertical_slope_s" not in found and "half_step_slope_s" in found
+    assert "vertical amplitude: no step from heel strike" in capsys.readouterr().out
+
+
+def scaled(walk: Recording, factor: np.ndarray) -> Recording:
+    return dataclasses.replace(
+        walk, com_m=walk.com_m * factor, heel_m=walk.heel_m * factor, toe_m=walk.toe_m * factor
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        (lambda walk: scaled(walk, np.array([1000, 1000, 1000])), "walking speed 1e+03 m/s"),
+        (lambda walk: scaled(walk, np.array([-1, -1, 1])), "no walk|walking speed -"),
+        (lambda walk: scaled(walk, np.array([1, 8, 1])), "step width 1.1 m is not human"),
+        (lambda walk: scaled(walk, np.array([1, -1, 1])), "step width -0.138 m is not human"),
+        (lambda walk: scaled(walk, np.array([1, 1, 2])), "CoM height 1.8"),
+        (lambda walk: scaled(walk, np.array([0, 0, 1])), "no walk"),
+        (
+            lambda walk: dataclasses.replace(walk, time_s=walk.time_s / 4),
+            "walking speed 4 m/s is not human: 0.1 to 3",
+        ),
+    ],
+)
+def test_values_outside_human_range_are_refused_by_name(change, named, write, capsys):
+    error = refusal(capsys, "calibrate", write(change(walk_of(PERSON, 1.0))))
+    assert any(text in error for text in named.split("|")), error
+    assert "walk.csv" in error
+
+
+def test_walks_that_give_no_model_are_refused_by_the_field(write, tmp_path, capsys):
+    out = tmp_path / "person.toml"
+    slow, fast = ({"half_step_slope_s": 0.001, "half_step_intercept_m": m} for m in (0.33, 0.2))
+    walks = [write(walk_of(slow, 0.7), "a.csv"), write(walk_of(fast, 1.0), "b.csv")]
+    error = refusal(capsys, "calibrate", *walks, "--out", str(out))
+    assert "half_step_slope_s = -0.4" in error
+    assert not out.exists()
+
+
+def test_height_that_is_not_the_walker_s_is_refused(write, capsys):
+    source = write(walk_of(PERSON, 1.0))
+    assert "0.44 of it; human: 0.45 to 0.65" in refusal(
+        capsys, "calibrate", source, "--height", "2.1"
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "named"),
+    [
+        ("walk.trc", "", "the first line must begin with PathFileType"),
+        ("walk.trc", "PathFileType\n\n\n\n\n\n", "no Units"),
+        ("walk.c3d", "hello" * 200, "not a C3D file"),
+        ("walk.c3d", "", "not a C3D file"),
+    ],
+)
+def test_file_that_is_none_of_its_kind_is_refused(name, text, named, tmp_path, capsys):
+    if name.endswith("c3d"):
+        pytest.importorskip("ezc3d")
+    path = tmp_path / name
+    path.write_text(text)
+    assert named in refusal(capsys, "calibrate", str(path))
+
+
+@pytest.mark.parametrize("name", ["walk.trc", "walk.c3d", "walk.csv"])
+def test_file_that_is_not_there_is_named(name, tmp_path, capsys):
+    assert name in refusal(capsys, "calibrate", str(tmp_path / name))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "named"),
+    [
+        ("\tmm\t", "\tfurlong\t", "unit 'furlong' must be one of m, cm, mm"),
+        ("3\t0.0100\t", "3\tsoon\t", "line 9: could not convert"),
+        ("3\t0.0100\t", "3\t\t", "line 9: the time must be a number"),
+        ("3\t0.0100\t", "3\t0.0050\t", "frame 3: the time must be later"),
+    ],
+)
+def test_bad_trc_is_named(old, new, named, tmp_path, capsys):
+    markers = laboratory(walk_of(PERSON, 1.0, 2.0), LABORATORIES["z up, walking along -y"])
+    path = tmp_path / "walk.trc"
+    trc_file(path, markers)
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    assert named in refusal(capsys, "calibrate", str(path))
+
+
+def test_c3d_without_ezc3d_says_what_to_install(monkeypatch, tmp_path, capsys):
+    monkeypatch.setitem(__import__("sys").modules, "ezc3d", None)
+    assert "pip install saddlewalk[c3d]" in refusal(capsys, "calibrate", str(tmp_path / "a.c3d"))
+
+
+@pytest.fixture
+def person(write, tmp_path):
+    """A calibrated person's TOML file and C header."""
+    walks = [write(walk_of(PERSON, v), f"{v}.csv") for v in SPEEDS_M_S]
+    toml, header = tmp_path / "person.toml", tmp_path / "jane_doe-2.h"
+    assert main(["calibrate", *walks, "--out", str(toml), "--header", str(header)]) == 0
+    return toml, header
+
+
+def test_toml_loads_wherever_a_configuration_does(person, tmp_path, capsys):
+    toml = str(person[0])
+    capsys.readouterr()
+    assert main(["plan", "--speed", "1.0", "--config", toml]) == 0
+    plan_csv = capsys.readouterr().out
+    assert main(["plan", "--speed", "1.0"]) == 0
+    assert plan_csv != capsys.readouterr().out
+    states = tmp_path / "states.csv"
+    states.write_text(
+        "t_s,com_x_m,com_y_m,com_z_m,com_vx_m_s,com_vy_m_s,left_x_m,left_y_m,right_x_m,right_y_m,"
+        "left_contact,right_contact\n0,0,0,0.9,1,0,0.3,0.1,-0.3,-0.1,1,1\n"
+    )
+    assert main(["supervise", "--in", str(states), "--config", toml]) == 0
+    options = parser().parse_args(["demo", "--config", toml])
+    assert "--set=lateral_factor=" in " ".join(host_arguments(load_config(options)))
+
+
+def test_header_compiles_with_the_core_and_is_the_same_configuration(person, tmp_path):
+    compiler = shutil.which("cc")
+    if compiler is None:
+        pytest.skip("no C compiler")
+    toml, header = person
+    names = list(field_ranges())
+    program = tmp_path / "print.c"
+    program.write_text(
+        "#include <stdio.h>\n"
+        f'#include "{header.name}"\n'
+        "int main(void)\n{\n"
+        "    const saddle_config_t config = saddle_config_jane_doe_2();\n"
+        "    if (saddle_config_check(&config) != NULL) {\n        return 1;\n    }\n"
+        + "".join(f'    printf("%.9g\\n", (double)config.{name});\n' for name in names)
+        + "    return 0;\n}\n"
+    )
+    flags = "-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror"
+    library = built("lib/libsaddlewalk.so")
+    include = f"-I{CHECKOUT / 'firmware/core/include'}"
+    binary = tmp_path / "print"
+    subprocess.run([compiler, *flags.split(), include, program, library, "-o", binary], check=True)
+    lines = subprocess.run(
+        [binary], env={"LD_LIBRARY_PATH": str(library.parent)}, check=True, capture_output=True
+    ).stdout.split()
+    config = load_config(argparse.Namespace(config=toml, height=None, mass=None))
+    assert [np.float32(line) for line in lines] == [
+        np.float32(getattr(config, name)) for name in names
+    ]
+
+
+def test_no_file_is_left_where_it_cannot_be_written(write, tmp_path, capsys):
+    out = tmp_path / "nowhere/person.toml"
+    error = refusal(capsys, "calibrate", write(walk_of(PERSON, 1.0)), "--out", str(out))
+    assert "--out" in error and "No such file or directory" in error
+
+
+def followed(tmp_path, *arguments: str) -> dict[str, dict[str, float]]:
+    """Rows of follow's CSV by configuration, numbers only."""
+    out = tmp_path / "follow.csv"
+    assert main(["follow", *arguments, "--ankle", "cycloid", "--out", str(out)]) == 0
+    columns = "com_y_m com_z_m com_z_shape_m swing_x_m landing_m heel_strike_s steps".split()
+    rows = [row for _, row in read_table(str(out), columns)]
+    return dict(zip(("default", "calibrated"), rows, strict=True))
+
+
+@pytest.mark.parametrize("known", ["this walk", "others"])
+def test_calibrated_plan_follows_the_walk_that_it_made(known, write, person, tmp_path, capsys):
+    before = [] if known == "this walk" else ["--config", str(person[0])]
+    rows = followed(tmp_path, write(walk_of(PERSON, 1.1)), *before)
+    assert rows["calibrated"]["steps"] == rows["default"]["steps"] >= 12
+    within = {"com_y_m": 1e-3, "com_z_m": 2e-3, "swing_x_m": 5e-3, "landing_m": 5e-3}
+    for name, tolerance in within.items():
+        assert rows["calibrated"][name] < tolerance < rows["default"][name], name
+    assert rows["calibrated"]["heel_strike_s"] < 0.01 < rows["default"]["heel_strike_s"]
+    assert "walk.csv" in capsys.readouterr().out
+
+
+def test_follow_measures_the_offset_that_it_is_given(write, tmp_path):
+    higher = moved(walk_of({}, 1.0), com_m=np.array([0, 0, 0.05]))
+    aside = moved(walk_of({}, 1.0), com_m=np.array([0, 0.03, 0]))
+    by_height = followed(tmp_path, write(higher))["default"]
+    assert by_height["com_z_m"] == pytest.approx(0.05, abs=0.01)
+    assert by_height["com_z_shape_m"] < 0.01
+    assert followed(tmp_path, write(aside))["default"]["com_y_m"] == pytest.approx(0.03, abs=1e-3)
+
+
+def test_follow_says_that_a_speed_is_out_of_reach(write, tmp_path, capsys):
+    small = {"half_step_slope_s": 0.05}
+    config = tmp_path / "small.toml"
+    config.write_text("".join(f"{name} = {value}\n" for name, value in small.items()))
+    assert main(["follow", write(walk_of({}, 1.7)), "--config", str(config)]) == 0
+    assert "(calibrated)" in " ".join(capsys.readouterr().out.split())
+
+
+def test_walk_with_no_steps_is_refused():
+    still = Walk(speed_m_s=1e-3, step_length_m=1e-3).recording()
+    with pytest.raises(UserError, match="no walk"):
+        measure(still)
