@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo test test-clang test-sanitize test-socketcan samples format clean help
+.PHONY: build demo test test-clang test-sanitize test-socketcan test-flood samples format clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -23,6 +23,9 @@ test-sanitize: build-sanitize/build.ninja .venv/installed-test ## the same with 
 test-socketcan: build .venv/installed-test ## the tests on the kernel's own CAN, in User Mode Linux where need be
 	@tools/vcan/with-vcan build/socketcan $(BIN)/pytest -m socketcan -p no:cacheprovider \
 		--junit-xml build/socketcan/pytest.xml
+
+test-flood: build .venv/installed-test ## 5,000 frames a second for a minute
+	@$(BIN)/pytest -m flood --junit-xml build/reports/flood.xml
 
 # $(call run_tests,BUILD_DIR,CTEST_PRESET,ENVIRONMENT_OF_PYTEST)
 define run_tests

@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 /** LCM explains at length on standard error why it cannot start; the caller does so in one line. */
@@ -24,17 +23,25 @@ static lcm_t *create_silently(const char *url)
     return lcm;
 }
 
-/** Whether the kernel routes a multicast group to this machine itself. Nothing is sent. */
-static bool is_routed_to_loopback(const char *group, uint16_t port)
+/** Whether the kernel's closest route to a multicast group leads to this machine itself. */
+static bool is_routed_to_loopback(uint32_t group)
 {
-    struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons(port)};
-    socklen_t size = sizeof address;
-    const int fd = socket(AF_INET, SOCK_DGRAM, 0);
-    const bool known = inet_pton(AF_INET, group, &address.sin_addr) == 1 &&
-                       connect(fd, (const struct sockaddr *)&address, size) == 0 &&
-                       getsockname(fd, (struct sockaddr *)&address, &size) == 0;
-    close(fd);
-    return known && ntohl(address.sin_addr.s_addr) >> 24 == IN_LOOPBACKNET;
+    char line[256], interface_name[16];
+    unsigned destination, mask, closest = 0;
+    bool found = false, loopback = false;
+    FILE *routes = fopen("/proc/net/route", "r");
+    while (routes != NULL && fgets(line, sizeof line, routes) != NULL) {
+        if (sscanf(line, "%15s %x %*x %*x %*d %*d %*d %x", interface_name, &destination, &mask) ==
+                3 && (group & mask) == destination && (!found || ntohl(mask) > ntohl(closest))) {
+            found = true;
+            closest = mask;
+            loopback = strcmp(interface_name, "lo") == 0;
+        }
+    }
+    if (routes != NULL) {
+        fclose(routes);
+    }
+    return loopback;
 }
 
 /** With the default URL nothing leaves the machine, but a group that is routed to a network is
@@ -42,8 +49,8 @@ static bool is_routed_to_loopback(const char *group, uint16_t port)
 static const char *reach_of(const char *url)
 {
     static const char udpm[] = "udpm://";
-    char group[INET_ADDRSTRLEN];
-    unsigned short port = 7667;
+    char group[INET_ADDRSTRLEN] = "";
+    struct in_addr address;
     if (strncmp(url, udpm, sizeof udpm - 1) != 0) {
         return "";
     }
@@ -51,8 +58,8 @@ static const char *reach_of(const char *url)
     if (hops != NULL && strtol(hops + 4, NULL, 10) > 0) {
         return ", which leaves this machine: anyone on that network may speak";
     }
-    const int found = sscanf(url + sizeof udpm - 1, "%15[0-9.]:%hu", group, &port);
-    return found >= 1 && is_routed_to_loopback(group, port)
+    (void)sscanf(url + sizeof udpm - 1, "%15[0-9.]", group);
+    return inet_pton(AF_INET, group, &address) == 1 && is_routed_to_loopback(address.s_addr)
                ? " on loopback"
                : ", which does not leave this machine, but hears others: "
                  "`ip route add 224.0.0.0/4 dev lo` keeps them out";

@@ -27,11 +27,14 @@ static uint64_t arrival_us(const saddle_runner_t *runner, uint32_t waited_us)
     return now_us > waited_us ? now_us - waited_us : 0;
 }
 
+/** LCM's own thread did not run either, and stamps what it then reads with the time of reading. */
 static void take_lcm_command(void *user, const saddle_command_t *command, uint32_t waited_us)
 {
     saddle_runner_t *runner = user;
+    const bool doubtful = saddle_now_us() < runner->doubtful_until_us;
+    const bool longer = doubtful && runner->stood_still_us > waited_us;
     saddle_inbox_take_command(&runner->inbox, SADDLE_SOURCE_LCM, command,
-                              arrival_us(runner, waited_us));
+                              arrival_us(runner, longer ? runner->stood_still_us : waited_us));
 }
 
 static bool is_lockstep_due(const saddle_runner_t *runner)
@@ -127,7 +130,11 @@ static bool wait(const saddle_runner_t *runner, uint64_t until_us)
 static uint64_t newest_place_us(saddle_runner_t *runner, uint64_t due_us, uint64_t now_us)
 {
     const uint64_t missed = (now_us - due_us) / SADDLE_TICK_US;
-    runner->timing.missed_ticks += (uint32_t)missed;
+    if (missed > 0) {
+        runner->timing.missed_ticks += (uint32_t)missed;
+        runner->stood_still_us = (uint32_t)((missed + 2) * SADDLE_TICK_US);
+        runner->doubtful_until_us = now_us + SADDLE_TICK_US;
+    }
     return due_us + missed * SADDLE_TICK_US;
 }
 
@@ -136,12 +143,14 @@ static void run_realtime(saddle_runner_t *runner)
     uint64_t due_us = saddle_now_us() + SADDLE_TICK_US;
     while (wait(runner, due_us)) {
         const uint64_t awake_us = saddle_now_us();
+        if (awake_us > due_us) {
+            due_us = newest_place_us(runner, due_us, awake_us);
+        }
         take_frames(runner);
         saddle_lcm_receive(runner->lcm, COMMANDS_AT_ONCE);
         if (awake_us < due_us) {
             continue;
         }
-        due_us = newest_place_us(runner, due_us, awake_us);
         saddle_timing_begin(&runner->timing, due_us, awake_us);
         tick(runner, due_us);
         due_us += SADDLE_TICK_US;

@@ -26,6 +26,8 @@ typedef struct {
     saddle_inbox_t inbox;
     saddle_timing_t timing;
     saddle_realtime_t realtime;
+    uint32_t stood_still_us;    /**< for how long the process did not run, the last time */
+    uint64_t doubtful_until_us; /**< what LCM brings until then may have waited all that time */
 } saddle_runner_t;
 
 /** Ready the runner. config has passed saddle_config_check(); bus and lcm are kept. */

@@ -14,7 +14,7 @@ import sys
 
 _NAMESPACE = ("unshare", "--user", "--map-root-user", "--net")
 _INSIDE = "SADDLEWALK_PRIVATE_NETWORK"
-_SIOCADDRT, _SIOCGIFFLAGS, _SIOCSIFFLAGS = 0x890B, 0x8913, 0x8914
+_SIOCADDRT, SIOCDELRT, _SIOCGIFFLAGS, _SIOCSIFFLAGS = 0x890B, 0x890C, 0x8913, 0x8914
 _IFF_UP, _RTF_UP = 0x1, 0x1
 _MULTICAST, _MASK = "224.0.0.0", "240.0.0.0"
 
@@ -37,14 +37,19 @@ def enter() -> None:
     os.execvp(_NAMESPACE[0], [*_NAMESPACE, *again])
 
 
-def _bring_up_loopback(control: socket.socket) -> None:
+def bring_up_loopback(control: socket.socket, up: bool = True) -> None:
+    """Or take it down, and every route through it."""
     request = struct.pack("16sh22x", b"lo", 0)
     flags = struct.unpack("16sh22x", fcntl.ioctl(control, _SIOCGIFFLAGS, request))[1]
-    fcntl.ioctl(control, _SIOCSIFFLAGS, struct.pack("16sh22x", b"lo", flags | _IFF_UP))
+    flags = flags | _IFF_UP if up else flags & ~_IFF_UP
+    fcntl.ioctl(control, _SIOCSIFFLAGS, struct.pack("16sh22x", b"lo", flags))
 
 
-def _route_multicast(control: socket.socket) -> None:
-    """The kernel's `struct rtentry`: destination, gateway, netmask, flags, device by name."""
+def route_multicast(control: socket.socket, request: int = _SIOCADDRT) -> None:
+    """Give loopback the route, or take it away by SIOCDELRT.
+
+    The kernel's `struct rtentry`: destination, gateway, netmask, flags, device by name.
+    """
     import ctypes
 
     def address(text: str) -> bytes:
@@ -56,11 +61,11 @@ def _route_multicast(control: socket.socket) -> None:
         *(0, address(_MULTICAST), address("0.0.0.0"), address(_MASK)),
         *(_RTF_UP, 0, 0, 0, 0, ctypes.addressof(device), 0, 0, 0),
     )
-    fcntl.ioctl(control, _SIOCADDRT, entry)
+    fcntl.ioctl(control, request, entry)
 
 
 if __name__ == "__main__":
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as network:
-        _bring_up_loopback(network)
-        _route_multicast(network)
+        bring_up_loopback(network)
+        route_multicast(network)
     os.execv(sys.argv[1], sys.argv[1:])

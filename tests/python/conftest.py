@@ -14,6 +14,8 @@ def pytest_runtest_setup(item):
     """tools/vcan/up says by SADDLEWALK_VCAN that vcan0 and vcan1 are there for the tests alone."""
     if item.get_closest_marker("socketcan") and "SADDLEWALK_VCAN" not in os.environ:
         pytest.skip("SocketCAN on vcan0 and vcan1: make test-socketcan")
+    if item.get_closest_marker("flood") and "flood" not in item.config.option.markexpr:
+        pytest.skip("a flood of a minute: make test-flood")
 
 
 SOCKETCAN = [

@@ -80,12 +80,13 @@ class Host:
     def stop(self, by: signal.Signals = signal.SIGTERM, announced: tuple[str, ...] = ()) -> str:
         """End the process cleanly; returns its summary line.
 
-        announced: how each line that it said on the way begins.
+        announced: how each line that it said on the way begins, in any order.
         """
         self.process.send_signal(by)
         output, errors = self.process.communicate(timeout=WAIT_S)
         assert self.process.returncode == 0, errors
-        for line, begin in itertools.zip_longest(errors.splitlines(), announced):
+        lines = sorted(errors.splitlines())
+        for line, begin in itertools.zip_longest(lines, sorted(announced)):
             assert line and begin and line.startswith(f"saddlewalk-host: {begin}"), errors
         assert output.count("\n") == 1
         return output
