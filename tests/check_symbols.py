@@ -9,9 +9,8 @@ caller's context shows up here by name.
 import subprocess
 import sys
 
-# memset, memcpy: compilers may write them for clearing or copying a struct, C library or none.
 # __stack_chk_fail: some distributions' compilers harden every function with it by default.
-ALLOWED = {"sqrtf", "memset", "memcpy", "__stack_chk_fail", "_GLOBAL_OFFSET_TABLE_"}
+ALLOWED = {"sqrtf", "__stack_chk_fail", "_GLOBAL_OFFSET_TABLE_"}
 
 
 def symbols(nm: str, archive: str) -> list[tuple[str, str, str]]:

@@ -156,13 +156,14 @@ static void walk_on(saddle_planner_t *planner, const saddle_config_t *config)
 static void begin_steps(saddle_planner_t *planner, const saddle_config_t *config,
                         const saddle_body_t *body)
 {
-    const saddle_cycle_start_t start = {
-        .phase = planner->start_phase,
-        .stance_y_m = planner->cycle.stance_y_m,
-        .other_m = planner->other_m,
-        .com_y_m = planner->shift_to_m.y,
-        .com_z_m = standing_height_m(planner, body, planner->shift_to_m),
-    };
+    saddle_cycle_start_t start;
+    start.phase = planner->start_phase;
+    start.stance_y_m = planner->cycle.stance_y_m;
+    start.other_m = planner->other_m;
+    start.com_y_m = planner->shift_to_m.y;
+    start.com_z_m = standing_height_m(planner, body, planner->shift_to_m);
+    start.speed = 0;
+    start.under_way = false;
     planner->mode = (uint8_t)SADDLE_MODE_STARTING;
     planner->shifting = false;
     planner->landing_open = false;
@@ -384,13 +385,15 @@ uint32_t saddle_planner_join(saddle_planner_t *planner, const saddle_config_t *c
     const uint32_t limits = obey(planner, config, body, command);
     const float left_y_m = saddle_landing_y_m(config, SADDLE_LEFT, planner->speed_m_s);
     const float right_y_m = saddle_landing_y_m(config, SADDLE_RIGHT, planner->speed_m_s);
-    const saddle_cycle_start_t start = {
-        .phase = 0,
-        .stance_y_m = left_y_m,
-        .other_m = {0.0f, right_y_m - left_y_m},
-        .speed = saddle_speed_from_m_s(planner->speed_m_s),
-        .under_way = true,
-    };
+    saddle_cycle_start_t start;
+    start.phase = 0;
+    start.stance_y_m = left_y_m;
+    start.other_m.x = 0.0f;
+    start.other_m.y = right_y_m - left_y_m;
+    start.com_y_m = 0.0f;
+    start.com_z_m = 0.0f;
+    start.speed = saddle_speed_from_m_s(planner->speed_m_s);
+    start.under_way = true;
     planner->mode = (uint8_t)SADDLE_MODE_WALKING;
     planner->shifting = false;
     saddle_clear(&planner->cycle, sizeof planner->cycle);

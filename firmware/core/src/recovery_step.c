@@ -64,7 +64,11 @@ saddle_recovery_t saddle_recovery_step(const saddle_config_t *config, const sadd
     const interval_t y = across(config, body, to_catch, outward * xcom_m.y);
     const float room_x_m = x.max_m - x.min_m;
     const float room_y_m = y.max_m - y.min_m;
-    saddle_recovery_t recovery = {.found = room_x_m >= 0.0f && room_y_m >= 0.0f};
+    saddle_recovery_t recovery;
+    recovery.found = room_x_m >= 0.0f && room_y_m >= 0.0f;
+    recovery.stops = false;
+    recovery.landing_m.x = 0.0f;
+    recovery.landing_m.y = 0.0f;
     recovery.foot = (uint8_t)saddle_other_side(to_catch->stance);
     recovery.margin_m = room_x_m < room_y_m ? room_x_m : room_y_m;
     if (recovery.found) {

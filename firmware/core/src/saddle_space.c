@@ -14,7 +14,13 @@ static float length_m(float x_m, float y_m)
 
 saddle_bos_t saddle_bos_undefined(void)
 {
-    const saddle_bos_t bos = {{0.0f, 0.0f}, {0.0f, 0.0f}, 0.0f, 0.0f, false};
+    const saddle_vec2_t zero = {0.0f, 0.0f};
+    saddle_bos_t bos;
+    bos.centre_m = zero;
+    bos.axis_x = zero;
+    bos.radius_m = 0.0f;
+    bos.half_depth_m = 0.0f;
+    bos.defined = false;
     return bos;
 }
 

@@ -155,11 +155,11 @@ typedef struct {
 static seen_t seen_from(const saddle_config_t *config,
                                const saddle_measurement_t *measurement, saddle_vec2_t com_m)
 {
-    seen_t seen = {
-        .com = {com_m, measurement->com.velocity_m_s},
-        .cop_m = {plus(com_m, measurement->foot[SADDLE_LEFT].cop_m),
-                  plus(com_m, measurement->foot[SADDLE_RIGHT].cop_m)},
-    };
+    seen_t seen;
+    seen.com.com_m = com_m;
+    seen.com.velocity_m_s = measurement->com.velocity_m_s;
+    seen.cop_m[SADDLE_LEFT] = plus(com_m, measurement->foot[SADDLE_LEFT].cop_m);
+    seen.cop_m[SADDLE_RIGHT] = plus(com_m, measurement->foot[SADDLE_RIGHT].cop_m);
     seen.bos = saddle_bos(seen.cop_m, config->cop_range_m, config->bos_factor);
     return seen;
 }
