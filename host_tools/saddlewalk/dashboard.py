@@ -1,9 +1,9 @@
 """What the firmware says about one walk, for people: `render` for a terminal, `summary` as a line.
 
-Both take LCM messages (plan_t, scores_t, verdict_t, health_t, or None while one has not come) and
-how long the firmware has been silent. They draw what the messages hold and judge nothing, except
-that silence makes the level unknown. Colour repeats a word or the sign of a number and is never the
-only sign of anything.
+Both take LCM messages (plan_t, scores_t, verdict_t, health_t, status_t, or None while one has not
+come) and how long the firmware has been silent. They draw what the messages hold and judge nothing,
+except that silence makes the level unknown. Colour repeats a word or the sign of a number and is
+never the only sign of anything.
 """
 
 import math
@@ -13,6 +13,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
+from saddlewalk import process_words
 from saddlewalk.core import TIME_MAX_S
 from saddlewalk.letters import large
 from saddlewalk.verdict import LEVELS, level_name, reason_words
@@ -48,6 +49,13 @@ FAULTS = (
     "COMMAND_STALE",
 )
 
+MISSING = {
+    "COMMAND_STALE": "commands",
+    **dict.fromkeys(("COM_STALE", "COM_RANGE", "COM_FROZEN"), "the CoM's measurement"),
+    **dict.fromkeys(("LEFT_STALE", "LEFT_RANGE", "LEFT_FROZEN"), "the left foot's"),
+    **dict.fromkeys(("RIGHT_STALE", "RIGHT_RANGE", "RIGHT_FROZEN"), "the right foot's"),
+}
+
 SCORES = (("S_pend", "s_pend"), ("S_jump", "s_jump"), ("S_SW", "s_sw"))
 MARGINS = (("CoM in BoS", "mos_com_m"), ("XCoM in BoS", "mos_xcom_m"))
 EXPECTED = (("CoM in E-BoS", "ebos_com_m"), ("XCoM in E-BoS", "ebos_xcom_m"))
@@ -57,9 +65,9 @@ BAR_CELLS = 25
 NOT_AVAILABLE = "n/a"
 
 
-def render(plan, scores, verdict, health, silent_s: float = 0.0) -> RenderableType:
+def render(plan, scores, verdict, health, status, silent_s: float = 0.0) -> RenderableType:
     """A panel: the level, large, and what decided it; gait, scores, margins, energy and health."""
-    if all(message is None for message in (plan, scores, verdict, health)):
+    if all(message is None for message in (plan, scores, verdict, health, status)):
         return Panel(Text(waiting(silent_s)), title="saddlewalk", border_style="yellow")
     level, words = announced(verdict, silent_s)
     style = LEVEL_STYLES.get(level, "")
@@ -71,13 +79,14 @@ def render(plan, scores, verdict, health, silent_s: float = 0.0) -> RenderableTy
         Text(f"energy: {energy(verdict)}"),
         Text(f"recovery step: {recovery_step(verdict)}"),
         Text(condition(health)),
+        *(Text(line) for line in process_words.lines(status)),
     ]
     return Panel(Group(*parts), title="saddlewalk", border_style=style)
 
 
-def summary(plan, scores, verdict, health, silent_s: float = 0.0) -> str:
+def summary(plan, scores, verdict, health, status, silent_s: float = 0.0) -> str:
     """The same on one line of plain text."""
-    nothing = all(message is None for message in (plan, scores, verdict, health))
+    nothing = all(message is None for message in (plan, scores, verdict, health, status))
     if silent_s > SILENT_AFTER_S or nothing:
         return waiting(silent_s)
     level, words = announced(verdict, silent_s)
@@ -89,6 +98,7 @@ def summary(plan, scores, verdict, health, silent_s: float = 0.0) -> str:
             f"energy: {energy(verdict)}",
             f"recovery step: {recovery_step(verdict)}",
             condition(health),
+            *process_words.lines(status),
         )
     )
 
@@ -184,7 +194,17 @@ def condition(health) -> str:
         )
         if names
     ]
-    return "health: " + ", ".join(parts)
+    return "health: " + ", ".join(parts) + safe_stop(health)
+
+
+def safe_stop(health) -> str:
+    """That the firmware ends the walk by itself, and for want of what; empty otherwise."""
+    if not health.limits >> LIMITS.index("SAFE_STOP") & 1:
+        return ""
+    faults = bit_names(health.faults, FAULTS)
+    missing = [words for fault, words in MISSING.items() if fault in faults]
+    why = " and ".join(missing) + " missing" if missing else "inputs not yet good for long enough"
+    return f"; SAFE STOP, the walk ends: {why}"
 
 
 def bit_names(bits: int, names: tuple[str, ...]) -> list[str]:

@@ -14,10 +14,10 @@ import lcm
 import pytest
 from rich.console import Console
 
-from saddlewalk import core, dashboard, paths
+from saddlewalk import core, dashboard, paths, process_words
 from saddlewalk import verdict as verdicts
 from saddlewalk.commands.monitor import CHANNELS, Listener
-from saddlewalk.lcm_types import health_t, plan_t, scores_t, verdict_t
+from saddlewalk.lcm_types import health_t, plan_t, scores_t, status_t, verdict_t
 from saddlewalk.letters import large
 
 MONITOR = [
@@ -65,6 +65,26 @@ def health() -> health_t:
     return message
 
 
+def status() -> status_t:
+    message = status_t()
+    message.period_us, message.latency_us, message.latency_max_us = 80012, 130, 1900
+    message.latencies = [0, 0, 0, 0, 0, 0, 50, 149, 0, 0, 1] + [0] * 6
+    message.command_source, message.command_age_us = status_t.SOURCE_LCM, 40_400
+    message.com_age_us = message.left_age_us = 8000
+    message.right_age_us = status_t.NEVER
+    message.can_transport, message.can_link = status_t.TRANSPORT_UDP, status_t.LINK_UP
+    message.lcm_link, message.lcm_losses = status_t.LINK_DOWN, 2
+    message.frames_accepted, message.frames_bad_version, message.other_version = 900, 5, 3
+    message.frames_no_room, message.wire_version = 7, 4
+    return message
+
+
+def view(**changed) -> list:
+    """All messages, in the order in which they are shown."""
+    made = {"plan": plan, "scores": scores, "verdict": verdict, "health": health, "status": status}
+    return [changed[name] if name in changed else make() for name, make in made.items()]
+
+
 def drawn(*view, **kwargs) -> str:
     console = Console(file=io.StringIO(), width=120)
     console.print(dashboard.render(*view, **kwargs))
@@ -79,48 +99,55 @@ SHOWN += ["to stop +31.2 J (beyond the ankles' work)", "to the plan -4.5 J (with
 SHOWN += ["right foot 0.70 m ahead and 0.15 m to the right of the left one, 0.21 m of reach left"]
 
 
+SHOWN += ["every 80.0 ms", "latency 0.13 ms (99% below 0.256 ms, worst 1.90 ms)"]
+SHOWN += ["commands from LCM 40 ms ago", "CoM 8 ms ago", "right foot never"]
+SHOWN += ["wire version 3 refused, this firmware has 4", "CAN by UDP up", "LCM DOWN (lost 2 times)"]
+SHOWN += ["dropped 7 frames without room"]
+
+
 @pytest.mark.parametrize("text", SHOWN)
 def test_every_number_is_shown_drawn_or_as_a_line(text):
-    assert text in drawn(plan(), scores(), verdict(), health())
-    assert text in dashboard.summary(plan(), scores(), verdict(), health())
+    assert text in drawn(*view())
+    assert text in dashboard.summary(*view())
 
 
 def test_the_line_is_one_line():
-    assert "\n" not in dashboard.summary(plan(), scores(), verdict(), health())
+    assert "\n" not in dashboard.summary(*view())
 
 
 @pytest.mark.parametrize("silent_s", [0.0, 1.0])
 def test_fresh_data_are_not_called_old(silent_s):
-    assert "no message" not in drawn(plan(), scores(), verdict(), health(), silent_s=silent_s)
-    assert "no message" not in dashboard.summary(plan(), scores(), verdict(), health(), silent_s)
+    assert "no message" not in drawn(*view(), silent_s=silent_s)
+    assert "no message" not in dashboard.summary(*view(), silent_s)
 
 
 def test_silence_of_more_than_a_second_is_said():
     words = "no message from the firmware for 1.4 s"
-    assert words in drawn(plan(), scores(), verdict(), health(), silent_s=1.4)
-    assert words in dashboard.summary(plan(), scores(), verdict(), health(), 1.4)
-    assert words in drawn(None, None, None, None, silent_s=1.4)
+    assert words in drawn(*view(), silent_s=1.4)
+    assert words in dashboard.summary(*view(), 1.4)
+    assert words in drawn(*[None] * 5, silent_s=1.4)
 
 
-@pytest.mark.parametrize("missing", range(4))
+@pytest.mark.parametrize("missing", range(5))
 def test_a_channel_that_is_silent_hides_no_other(missing):
-    view = [plan(), scores(), verdict(), health()]
-    view[missing] = None
-    text = drawn(*view)
+    told = view()
+    told[missing] = None
+    text = drawn(*told)
     assert ("phase 2" in text) == (missing != 0)
     assert ("0.62" in text) == (missing != 1)
     assert ("+0.097 m" in text and "31.2 J" in text) == (missing != 2)
     assert ("tick 512" in text) == (missing != 3)
+    assert ("900 frames accepted" in text) == (missing != 4)
 
 
 def test_the_level_comes_first_and_large_and_in_words():
-    text = drawn(plan(), scores(), verdict(), health())
+    text = drawn(*view())
     rows = [line.strip("│ ") for line in text.splitlines()[1:5]]
     assert rows == [
         *(row.strip() for row in large("CAUTION").splitlines()),
         "level: caution, sideways motion departs from the expected",
     ]
-    assert dashboard.summary(plan(), scores(), verdict(), health()).startswith("CAUTION: sideways")
+    assert dashboard.summary(*view()).startswith("CAUTION: sideways")
 
 
 @pytest.mark.parametrize("name", verdicts.LEVELS)
@@ -132,12 +159,12 @@ def test_every_level_can_be_written_large(name):
 def test_a_level_without_a_reason_stands_alone():
     message = verdict()
     message.level, message.reason = verdict_t.LEVEL_STABLE, verdict_t.REASON_NONE
-    assert "level: stable\n" in re.sub(r" *│", "", drawn(plan(), scores(), message, health()))
-    assert dashboard.summary(plan(), scores(), message, health()).startswith("STABLE | plan:")
+    assert "level: stable\n" in re.sub(r" *│", "", drawn(*view(verdict=message)))
+    assert dashboard.summary(*view(verdict=message)).startswith("STABLE | plan:")
 
 
 def test_an_old_level_is_not_shown():
-    text = drawn(plan(), scores(), verdict(), health(), silent_s=1.4)
+    text = drawn(*view(), silent_s=1.4)
     assert "level: unknown, no message from the firmware for 1.4 s" in text
     assert "caution" not in text.lower()
     assert large("CAUTION").splitlines()[0] not in text
@@ -146,7 +173,7 @@ def test_an_old_level_is_not_shown():
 def test_a_level_and_a_reason_of_other_firmware_are_given_by_number():
     message = verdict()
     message.level, message.reason = 9, 99
-    assert "level: level 9, reason 99" in drawn(plan(), scores(), message, health())
+    assert "level: level 9, reason 99" in drawn(*view(verdict=message))
 
 
 def test_no_recovery_step_is_said_and_by_how_much():
@@ -170,6 +197,56 @@ def test_energies_that_are_not_known_are_not_judged():
     message = verdict()
     message.excess_stop_j = message.excess_track_j = math.nan
     assert dashboard.energy(message) == "to stop n/a, to the plan n/a"
+
+
+@pytest.mark.parametrize(
+    ("faults", "words"),
+    [
+        (("COMMAND_STALE",), "commands missing"),
+        (("COM_RANGE", "LEFT_STALE"), "the CoM's measurement and the left foot's missing"),
+        ((), "inputs not yet good for long enough"),
+    ],
+)
+def test_a_safe_stop_is_said_with_what_is_missing(faults, words):
+    message = health()
+    assert "SAFE STOP" not in dashboard.condition(message)
+    message.limits = 1 << dashboard.LIMITS.index("SAFE_STOP")
+    message.faults = sum(1 << dashboard.FAULTS.index(fault) for fault in faults)
+    assert dashboard.condition(message).endswith(f"; SAFE STOP, the walk ends: {words}")
+
+
+def test_what_was_refused_is_told_by_cause():
+    assert "900 frames accepted, 5 bad version, wire" in process_words.inputs(status())
+
+
+def test_a_process_without_troubles_has_none_told():
+    message = status_t()
+    message.can_link = message.lcm_link = status_t.LINK_UP
+    message.fifo_priority, message.memory_locked = 20, 1
+    timing, inputs, transports = process_words.lines(message)
+    assert timing.endswith("0 ticks missed, SCHED_FIFO 20, memory locked")
+    assert inputs.endswith("0 frames accepted")
+    assert transports == "transports: CAN by SocketCAN up, LCM up"
+
+
+def test_codes_of_other_firmware_are_given_by_number():
+    message = status()
+    message.command_source, message.can_link = 9, 8
+    assert "commands from 9" in process_words.inputs(message)
+    assert "UDP 8" in process_words.transports(message)
+
+
+@pytest.mark.parametrize(
+    ("kind", "names"),
+    [
+        ("LINK", process_words.LINKS),
+        ("SOURCE", ("none", *process_words.SOURCES[1:])),
+        ("TRANSPORT", process_words.TRANSPORTS),
+    ],
+)
+def test_names_are_those_of_the_status(kind, names):
+    for number, name in enumerate(names):
+        assert getattr(status_t, f"{kind}_{name.upper().replace('-', '_')}") == number
 
 
 def test_a_failed_tick_is_said_and_no_numbers_of_a_plan():
@@ -278,13 +355,13 @@ def test_the_listener_knows_for_how_long_it_heard_nothing():
 
 def test_once_prints_one_line_of_a_log(tmp_path):
     log = lcm.EventLog(str(tmp_path / "log"), "w", overwrite=True)
-    for channel, message in zip(CHANNELS, (plan(), scores(), verdict(), health()), strict=True):
+    for channel, message in zip(CHANNELS, view(), strict=True):
         log.write_event(0, channel, message.encode())
     log.close()
     url = f"file://{tmp_path / 'log'}?speed=0"
     done = subprocess.run([*MONITOR, "--once", "--lcm", url], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.splitlines() == [dashboard.summary(plan(), scores(), verdict(), health())]
+    assert done.stdout.splitlines() == [dashboard.summary(*view())]
 
 
 def test_once_fails_when_nothing_comes():

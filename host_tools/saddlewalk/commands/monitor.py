@@ -14,6 +14,7 @@ CHANNELS = {
     "SADDLEWALK_SCORES": "scores_t",
     "SADDLEWALK_VERDICT": "verdict_t",
     "SADDLEWALK_HEALTH": "health_t",
+    "SADDLEWALK_STATUS": "status_t",
 }
 
 
@@ -85,9 +86,10 @@ class Listener:
         panel = render(*self._view())
         return Group(panel, self._note()) if self.malformed else panel
 
-    def _view(self) -> tuple[Any, Any, Any, Any, float]:
-        plan, scores, verdict, health = (self.latest.get(channel) for channel in CHANNELS)
-        return plan, scores, verdict, health, time.monotonic() - self.heard_s
+    def _view(self) -> tuple[Any, ...]:
+        """The newest of CHANNELS, and for how long nothing came."""
+        latest = (self.latest.get(channel) for channel in CHANNELS)
+        return *latest, time.monotonic() - self.heard_s
 
     def _note(self) -> str:
         return f"{self.malformed} LCM messages could not be read"

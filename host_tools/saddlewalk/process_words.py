@@ -1,0 +1,109 @@
+"""What a status_t says about the host process, in words."""
+
+LINKS = ("unused", "up", "DOWN", "BUS-OFF")
+SOURCES = ("nobody yet", "CAN", "LCM")
+TRANSPORTS = ("SocketCAN", "UDP")
+REFUSED = {
+    "malformed": "frames_malformed",
+    "bad CRC": "frames_bad_crc",
+    "bad counter": "frames_bad_counter",
+    "bad version": "frames_bad_version",
+    "unusable commands": "commands_unusable",
+    "commands of the source without authority": "commands_ignored",
+}
+DROPPED = {
+    "frames without room": "frames_no_room",
+    "frames without link": "frames_no_link",
+    "LCM messages": "messages_not_sent",
+}
+USUAL = 0.99  # the share of ticks whose latency is told beside the worst
+
+
+def lines(status) -> list[str]:
+    """Timing, inputs and transports; nothing while no status_t has come."""
+    return [timing(status), inputs(status), transports(status)] if status else []
+
+
+def timing(status) -> str:
+    """How the ticks keep their time."""
+    below_us = latency_below_us(status.latencies, USUAL)
+    usual = "" if below_us is None else f"{USUAL:.0%} below {below_us / 1000:g} ms, "
+    parts = [
+        f"timing: every {status.period_us / 1000:.1f} ms",
+        f"latency {status.latency_us / 1000:.2f} ms "
+        f"({usual}worst {status.latency_max_us / 1000:.2f} ms)",
+        f"work {status.work_us / 1000:.2f} ms",
+        f"{status.missed_ticks} ticks missed",
+    ]
+    if status.fifo_priority:
+        parts.append(f"SCHED_FIFO {status.fifo_priority}")
+    return ", ".join(parts) + (", memory locked" if status.memory_locked else "")
+
+
+def latency_below_us(latencies, share: float) -> int | None:
+    """The end of the bin below which that share of the ticks lies; None if it is the last's."""
+    counted = 0
+    for exponent, ticks in enumerate(latencies[:-1], start=1):
+        counted += ticks
+        if counted >= share * sum(latencies):
+            return 2**exponent
+    return None
+
+
+def inputs(status) -> str:
+    """Whose commands are obeyed, how old each input is, and what was refused."""
+    ages = (
+        ("CoM", status.com_age_us),
+        ("left foot", status.left_age_us),
+        ("right foot", status.right_age_us),
+    )
+    return ", ".join(
+        [
+            f"inputs: commands from {_name(SOURCES, status.command_source)} "
+            f"{_age(status, status.command_age_us)}",
+            *(f"{name} {_age(status, age_us)}" for name, age_us in ages),
+            f"{status.frames_accepted} frames accepted",
+            *_counts(status, REFUSED),
+            *_other_version(status),
+        ]
+    )
+
+
+def transports(status) -> str:
+    """Whether CAN and LCM carry, and what was dropped."""
+    can = f"CAN by {_name(TRANSPORTS, status.can_transport)}"
+    parts = [
+        _link(can, status.can_link, status.can_losses),
+        _link("LCM", status.lcm_link, status.lcm_losses),
+    ]
+    dropped = _counts(status, DROPPED)
+    return "transports: " + ", ".join(
+        parts + ([f"dropped {', '.join(dropped)}"] if dropped else [])
+    )
+
+
+def _link(name: str, state: int, losses: int) -> str:
+    lost = f" (lost {losses} times)" if losses else ""
+    return f"{name} {_name(LINKS, state)}{lost}"
+
+
+def _other_version(status) -> list[str]:
+    if not status.frames_bad_version:
+        return []
+    return [f"wire version {status.other_version} refused, this firmware has {status.wire_version}"]
+
+
+def _age(status, age_us: int) -> str:
+    return "never" if age_us == status.NEVER else f"{age_us / 1000:.0f} ms ago"
+
+
+def _counts(status, names: dict[str, str]) -> list[str]:
+    return [
+        f"{getattr(status, field)} {words}"
+        for words, field in names.items()
+        if getattr(status, field)
+    ]
+
+
+def _name(names: tuple[str, ...], number: int) -> str:
+    return names[number] if 0 <= number < len(names) else str(number)
