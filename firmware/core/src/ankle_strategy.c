@@ -46,24 +46,36 @@ static void at_rest(const saddle_body_t *body, saddle_ankle_state_t *ankle)
     ankle->leg_rate_m_s = 0.0f;
 }
 
+saddle_ankle_angles_t saddle_ankle_angles(const saddle_config_t *config,
+                                          const saddle_transition_t *transition,
+                                          float since_strike_s)
+{
+    saddle_ankle_angles_t angles = {0.0f, 0.0f};
+    if (config->ankle != SADDLE_ANKLE_RIGID) {
+        const float progress = saddle_erf(since_strike_s / config->ankle_time_constant_s);
+        angles.toe_off_rad = transition->toe_off_rad * (1.0f + progress);
+        angles.heel_strike_rad = transition->heel_strike_rad * (1.0f - progress);
+    }
+    return angles;
+}
+
 void saddle_ankle(const saddle_config_t *config, const saddle_body_t *body,
                   const saddle_transition_t *transition, float since_strike_s, bool toe_off_acts,
                   saddle_ankle_state_t *ankle)
 {
+    const saddle_ankle_angles_t angles = saddle_ankle_angles(config, transition, since_strike_s);
     at_rest(body, ankle);
     if (config->ankle == SADDLE_ANKLE_RIGID) {
         return;
     }
     const float u = since_strike_s / config->ankle_time_constant_s;
-    const float progress = saddle_erf(u);
     const float progress_rate =
         TWO_OVER_SQRT_PI * saddle_exp(-u * u) / config->ankle_time_constant_s;
-    ankle->toe_off_rad = transition->toe_off_rad * (1.0f + progress);
-    ankle->heel_strike_rad = transition->heel_strike_rad * (1.0f - progress);
-
-    const float angle_rad = toe_off_acts ? ankle->toe_off_rad : ankle->heel_strike_rad;
+    const float angle_rad = toe_off_acts ? angles.toe_off_rad : angles.heel_strike_rad;
     const float angle_rate = progress_rate * (toe_off_acts ? transition->toe_off_rad
                                                            : -transition->heel_strike_rad);
+    ankle->toe_off_rad = angles.toe_off_rad;
+    ankle->heel_strike_rad = angles.heel_strike_rad;
     ankle->leg_length_m += elongation_m(config, angle_rad);
     ankle->leg_rate_m_s = config->cop_range_m * saddle_cos(0.5f * angle_rad) * angle_rate;
 }

@@ -138,19 +138,23 @@ static float length_m(float x_m, float y_m, float z_m)
     return sqrtf(x_m * x_m + y_m * y_m + z_m * z_m);
 }
 
+/* The ankles of the erf and rigid models at the saddle via point. */
+static saddle_ankle_angles_t angles_at_saddle(const saddle_cycle_t *cycle,
+                                              const saddle_config_t *config)
+{
+    const float lead_s = cycle->transition.heel_strike_lead_m / shaping_speed_m_s(cycle);
+    return saddle_ankle_angles(config, &cycle->transition, lead_s);
+}
+
 /* The angle at which the stance foot leaves the ground, at the saddle via point. */
 static float toe_off_angle_rad(const saddle_cycle_t *cycle, const saddle_config_t *config,
                                const saddle_body_t *body, float y_m, float z_m)
 {
-    saddle_ankle_state_t ankle;
-    if (config->ankle == SADDLE_ANKLE_CYCLOID) {
-        saddle_ankle_for_leg(config, body, length_m(cycle->quarter.length_m, y_m, z_m), true,
-                             &ankle);
-    } else {
-        saddle_ankle(config, body, &cycle->transition,
-                     cycle->transition.heel_strike_lead_m / shaping_speed_m_s(cycle), true,
-                     &ankle);
+    if (config->ankle != SADDLE_ANKLE_CYCLOID) {
+        return angles_at_saddle(cycle, config).toe_off_rad;
     }
+    saddle_ankle_state_t ankle;
+    saddle_ankle_for_leg(config, body, length_m(cycle->quarter.length_m, y_m, z_m), true, &ankle);
     return ankle.toe_off_rad;
 }
 
@@ -377,17 +381,14 @@ static void cycloid_height(const saddle_cycle_t *cycle, const saddle_config_t *c
 static float landing_angle_rad(const saddle_cycle_t *cycle, const saddle_config_t *config,
                                const saddle_body_t *body)
 {
-    const saddle_quarter_t *quarter = &cycle->quarter;
-    saddle_ankle_state_t ankle;
-    if (config->ankle == SADDLE_ANKLE_CYCLOID) {
-        const float z_m = saddle_cycloid(body, quarter, SADDLE_HALF_PI).value;
-        saddle_ankle_for_leg(config, body, length_m(quarter->length_m, 0.5f * quarter->width_m, z_m),
-                             false, &ankle);
-    } else {
-        saddle_ankle(config, body, &cycle->transition,
-                     cycle->transition.heel_strike_lead_m / shaping_speed_m_s(cycle), false,
-                     &ankle);
+    if (config->ankle != SADDLE_ANKLE_CYCLOID) {
+        return angles_at_saddle(cycle, config).heel_strike_rad;
     }
+    const saddle_quarter_t *quarter = &cycle->quarter;
+    const float z_m = saddle_cycloid(body, quarter, SADDLE_HALF_PI).value;
+    saddle_ankle_state_t ankle;
+    saddle_ankle_for_leg(config, body, length_m(quarter->length_m, 0.5f * quarter->width_m, z_m),
+                         false, &ankle);
     return ankle.heel_strike_rad;
 }
 

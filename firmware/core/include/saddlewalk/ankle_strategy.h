@@ -26,6 +26,16 @@ typedef struct {
 saddle_transition_t saddle_transition(const saddle_config_t *config, const saddle_body_t *body,
                                       const saddle_quarter_t *quarter, float heel_strike_rad);
 
+/** Ankle angles, sole to ground. */
+typedef struct {
+    float toe_off_rad, heel_strike_rad;
+} saddle_ankle_angles_t;
+
+/** [E12] The angles since_strike_s after the nearest heel strike (negative: before it). */
+saddle_ankle_angles_t saddle_ankle_angles(const saddle_config_t *config,
+                                          const saddle_transition_t *transition,
+                                          float since_strike_s);
+
 /** The ankles since_strike_s after the nearest heel strike (negative: before it). Before the saddle
  *  via point the stance leg is in its toe-off part, after it in its heel-strike part:
  *  toe_off_acts. */
