@@ -47,6 +47,7 @@ def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys
     told = capsys.readouterr().out
     assert "did not fall" in told and "BAD" not in told and "push of 8 N s to 90 degrees" in told
     assert "stands at the end" in told
+    assert f"{round(22 / TICK_S)} ticks computed again from the log: the same bits\n" in told
     assert_levels_told(told, [row["level"] for row in rows(tmp_path)])
     assert {path.name for path in tmp_path.iterdir()} == FILES
 

@@ -214,4 +214,20 @@ def _checks(
             f"{sum(channels.values())} LCM messages read again"
             + (f", none on {', '.join(missing)}" if missing else ""),
         ),
+        _rerun(recorder.lcm_path),
     ]
+
+
+def _rerun(log: Path) -> tuple[bool, str]:
+    """Whether the logged inputs give the logged outputs again; what LCM lost is only told."""
+    from saddlewalk.logs import load_lcm_log
+    from saddlewalk.rerun import rerun_lcm
+
+    try:
+        report = rerun_lcm(load_lcm_log(log).records)
+    except UserError as error:
+        return False, f"{log} cannot be rerun: {error}"
+    if report.first:
+        return False, f"rerun of the log: {report.first}"
+    words = f"{report.ticks} ticks computed again from the log: the same bits"
+    return True, "; not compared: ".join([words, *report.not_compared])
