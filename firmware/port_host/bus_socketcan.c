@@ -34,16 +34,15 @@ static bool set_up(int fd, const char *interface_name)
            bind(fd, (const struct sockaddr *)&address, sizeof address) == 0;
 }
 
+/** The interface first: to open or close a CAN socket waits in the kernel for whoever is changing
+ *  an interface, longer than a tick may. */
 bool saddle_bus_socketcan_open(saddle_bus_t *bus)
 {
-    const int fd = bus->receive_fd = bus->send_fd = socket(PF_CAN, SOCK_RAW, CAN_RAW);
-    if (fd < 0) {
-        return fail(bus, "cannot be used: this kernel has no CAN");
-    }
     if (!saddle_interface_is_up(bus->channel)) {
-        return fail(bus, "is not there or not up");
+        return fail(bus, "is not there or not up, or this kernel has no CAN");
     }
-    if (!set_up(fd, bus->channel)) {
+    const int fd = bus->receive_fd = bus->send_fd = socket(PF_CAN, SOCK_RAW, CAN_RAW);
+    if (fd < 0 || !set_up(fd, bus->channel)) {
         return fail(bus, strerror(errno));
     }
     snprintf(bus->description, sizeof bus->description, "SocketCAN %.16s", bus->channel);
