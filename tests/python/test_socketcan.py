@@ -2,6 +2,7 @@
 
 import contextlib
 import itertools
+import re
 import select
 import subprocess
 import sys
@@ -149,20 +150,36 @@ def test_an_interface_that_is_down_is_one_line():
         assert "vcan0 is not there or not up" in done.stderr
 
 
+LOST_AND_BACK = ("CAN vcan0 is lost: ", "CAN vcan0 is back")
+
+
 def test_the_firmware_ticks_on_while_its_interface_is_down():
     with Host("--lcm=none", spec=CLASSIC) as host:
         host.tick()
         begun_s = time.monotonic()
         with interface_down():
             time.sleep(5 * TICK_S)
-        assert_all_ticks_come_again(host, begun_s)
+        words = assert_all_ticks_come_again(host, begun_s, LOST_AND_BACK)
+        assert count_of("without link", words) > 3 * MESSAGES_PER_TICK
+
+
+def test_the_firmware_comes_back_to_an_interface_made_anew():
+    with Host("--lcm=none", spec=CLASSIC) as host:
+        host.tick()
+        begun_s = time.monotonic()
+        run("ip link delete vcan0")
+        time.sleep(5 * TICK_S)
+        run("ip link add dev vcan0 type vcan")
+        run("ip link set vcan0 mtu 16 up")
+        words = assert_all_ticks_come_again(host, begun_s, LOST_AND_BACK)
+        assert count_of("without link", words) > 3 * MESSAGES_PER_TICK
 
 
 def test_a_full_queue_costs_frames_but_no_tick():
     with Host("--lcm=none", spec=CLASSIC) as host:
         host.tick()
         begun_s = time.monotonic()
-        # 100 bytes a second and room for ten frames, where 18 frames of 16 bytes come in 80 ms.
+        # 100 bytes a second and room for ten frames, where 21 frames of 16 bytes come in 80 ms.
         run("tc qdisc add dev vcan0 root tbf rate 800bit burst 100 limit 160")
         try:
             discard(host.bus)
@@ -170,7 +187,12 @@ def test_a_full_queue_costs_frames_but_no_tick():
             assert discard(host.bus) < MESSAGES_PER_TICK
         finally:
             run("tc qdisc delete dev vcan0 root")
-        assert_all_ticks_come_again(host, begun_s)
+        words = assert_all_ticks_come_again(host, begun_s)
+        assert count_of("frames without room", words) > 6 * MESSAGES_PER_TICK
+
+
+def count_of(what: str, summary: str) -> int:
+    return int(re.search(rf"(\d+) {what}", summary)[1])
 
 
 def discard(bus: can.BusABC) -> int:
@@ -178,12 +200,17 @@ def discard(bus: can.BusABC) -> int:
     return sum(1 for _ in iter(lambda: bus.recv(0), None))
 
 
-def assert_all_ticks_come_again(host: Host, begun_s: float) -> None:
-    """On a bus opened anew whole ticks come, and next to none was left out since begun_s."""
+def assert_all_ticks_come_again(host: Host, begun_s: float, announced: tuple[str, ...] = ()) -> str:
+    """On a bus opened anew whole ticks come, and next to none was left out since begun_s.
+
+    announced: how each line of the host's on the way begins. Returns its summary line.
+    """
     host.bus.shutdown()
     host.bus = open_bus(host.spec)
     host.tick_frames()
     for _ in range(3):
         assert len(host.tick_frames()) == MESSAGES_PER_TICK
     passed = int((time.monotonic() - begun_s) / TICK_S)
-    assert int(host.stop().split()[0]) >= passed - 2
+    words = host.stop(announced=announced)
+    assert int(words.split()[0]) >= passed - 2
+    return words
