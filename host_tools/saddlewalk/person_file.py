@@ -1,5 +1,6 @@
 """A fitted gait model as a TOML file for --config and as a C header for firmware."""
 
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,17 +21,10 @@ def toml_text(fits: Sequence[Fit], sources: Sequence[str]) -> str:
 def header_text(fits: Sequence[Fit], sources: Sequence[str], path: str) -> str:
     """A header that defines `saddle_config_STEM()`, STEM the file's name as a C identifier."""
     stem = re.sub(r"\W", "_", Path(path).stem, flags=re.ASCII).lower()
-    fields = fields_of(fits)
-    height, mass = (
-        f"{_number(fields.pop(name, default))}f"
-        for name, default in (
-            ("body_height_m", DEFAULT_HEIGHT_M),
-            ("body_mass_kg", DEFAULT_MASS_KG),
-        )
-    )
+    body = f"{DEFAULT_HEIGHT_M}f, {DEFAULT_MASS_KG}f"
     return "\n".join(
         [
-            *(f"/* {line.replace('*/', '')} */" for line in _origin(sources)),
+            *(f"/* {line} */" for line in _origin(sources)),
             f"#ifndef SADDLE_CONFIG_{stem.upper()}_H",
             f"#define SADDLE_CONFIG_{stem.upper()}_H",
             "",
@@ -38,8 +32,8 @@ def header_text(fits: Sequence[Fit], sources: Sequence[str], path: str) -> str:
             "",
             f"static inline saddle_config_t saddle_config_{stem}(void)",
             "{",
-            f"    saddle_config_t config = saddle_config_default({height}, {mass});",
-            *(f"    config.{name} = {_number(value)}f;" for name, value in fields.items()),
+            f"    saddle_config_t config = saddle_config_default({body});",
+            *(f"    config.{name} = {_number(value)}f;" for name, value in fields_of(fits).items()),
             "    return config;",
             "}",
             "",
@@ -50,16 +44,18 @@ def header_text(fits: Sequence[Fit], sources: Sequence[str], path: str) -> str:
 
 
 def _origin(sources: Sequence[str]) -> list[str]:
-    """Where it comes from, in lines without anything that could end a comment."""
+    """Where it comes from; a file's name, which has no slash, ends no comment."""
     plain = [re.sub(r"[^ -~]", "?", source) for source in sources]
     return [f"Fitted by saddlewalk calibrate {__version__} to:", *plain]
 
 
 def _how_known(fit: Fit) -> str:
-    known = [f"{fit.steps} steps"] if fit.steps else ["not fitted"]
-    if fit.r2 == fit.r2:
-        known.append(f"R2 {fit.r2:.2f}")
-    return f"{fit.quantity}: {', '.join([*known, fit.note]) if fit.note else ', '.join(known)}"
+    known = [
+        f"{fit.steps} step{'s' * (fit.steps != 1)}" if fit.steps else "not fitted",
+        "" if math.isnan(fit.r2) else f"R2 {fit.r2:.2f}",
+        fit.note,
+    ]
+    return f"{fit.quantity}: {', '.join(text for text in known if text)}"
 
 
 def _number(value: float) -> str:

@@ -172,9 +172,8 @@ def _sways(recording: Recording, placed: list[Placement]) -> tuple[np.ndarray, d
 
 
 def _cosine_m(share: np.ndarray, y_m: np.ndarray) -> float:
-    """Of one period, fitted beside a sine and the offset and drift of the walk."""
-    angle = 2 * np.pi * share
-    shapes = np.stack([np.cos(angle), np.sin(angle), np.ones_like(share), share], axis=1)
+    """Of one period about its mean. What is odd about the middle, as a drift, does not count."""
+    shapes = np.stack([np.cos(2 * np.pi * share), np.ones_like(share)], axis=1)
     return float(np.linalg.lstsq(shapes, y_m)[0][0])
 
 

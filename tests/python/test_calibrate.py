@@ -252,10 +252,10 @@ def test_laboratory_file_calibrates_as_the_csv_does(kind, write, tmp_path):
     assert calibrated(tmp_path, source) == pytest.approx(expected, abs=2e-3)
 
 
-@pytest.mark.parametrize("kind", WRITERS)
-def test_marker_that_was_not_seen_is_missing(kind, tmp_path):
+@pytest.mark.parametrize(("kind", "written"), [("c3d", np.nan), ("c3d", 0.0), ("trc", np.nan)])
+def test_marker_that_was_not_seen_is_missing(kind, written, tmp_path):
     markers = laboratory(walk_of(PERSON, 1.0), LABORATORIES["z up, walking along -y"])
-    markers["Ann:LHEE"][100:120] = np.nan
+    markers["Ann:LHEE"][100:120] = written
     loaded = load_walk(WRITERS[kind](tmp_path / f"walk.{kind}", markers))
     assert np.isnan(loaded.heel_m[0, 100:120]).all()
     assert np.isfinite(loaded.heel_m[0, 120:]).all()
@@ -514,6 +514,14 @@ def test_follow_measures_the_offset_that_it_is_given(write, tmp_path):
     assert by_height["com_z_m"] == pytest.approx(0.05, abs=0.01)
     assert by_height["com_z_shape_m"] < 0.01
     assert followed(tmp_path, write(aside))["default"]["com_y_m"] == pytest.approx(0.03, abs=1e-3)
+
+
+def test_follow_compares_the_foot_that_swings(write, tmp_path):
+    walk = walk_of({}, 1.0)
+    ahead_m = 0.1 * (walk.heel_m[..., 2:] > 0) * np.array([1.0, 0, 0])
+    rows = followed(tmp_path, write(moved(walk, heel_m=ahead_m, toe_m=ahead_m)))
+    assert rows["default"]["swing_x_m"] == pytest.approx(0.1, abs=0.01)
+    assert rows["default"]["landing_m"] < 0.002
 
 
 def test_follow_says_that_a_speed_is_out_of_reach(write, tmp_path, capsys):
