@@ -3,6 +3,7 @@ laboratories' files, missing markers, nonsense; the TOML and the C header that c
 
 import argparse
 import dataclasses
+import functools
 import math
 import shutil
 import subprocess
@@ -56,7 +57,12 @@ LABORATORIES = {
 
 def walk_of(fields: dict[str, float], speed_m_s: float, duration_s: float = 9.0) -> Recording:
     """The core's walk as if it had been recorded: heel and toe d_h behind and ahead of the CoP."""
-    config = configuration({**fields, "ankle": ANKLES["cycloid"]})
+    return recorded(tuple(fields.items()), speed_m_s, duration_s)
+
+
+@functools.cache
+def recorded(fields: tuple, speed_m_s: float, duration_s: float) -> Recording:
+    config = configuration({**dict(fields), "ankle": ANKLES["cycloid"]})
     com_m, foot_m = [], ([], [])
     for _, (time_s, output) in zip(
         range(round(duration_s * RATE_HZ)),
@@ -328,9 +334,8 @@ def test_what_a_recording_does_not_tell_is_said_with_the_reason(write, tmp_path,
 
 
 def test_height_of_the_com_not_seen_leaves_the_transverse_plane(write, tmp_path, capsys):
-    walk = walk_of(PERSON, 1.0)
-    walk.com_m[:, 2] = np.nan
-    found = calibrated(tmp_path, write(walk))
+    unseen = np.array([0, 0, np.nan])
+    found = calibrated(tmp_path, write(moved(walk_of(PERSON, 1.0), com_m=unseen)))
     assert "vertical_slope_s" not in found and "half_step_slope_s" in found
     assert "vertical amplitude: no step from heel strike" in capsys.readouterr().out
 
