@@ -2,7 +2,8 @@
 
 The datagrams are those of python-can's `udp_multicast`, so its tools understand them; this bus adds
 what that one lacks. It stays on the loopback interface, with hop limit 0, and so needs no route and
-no root. A node does not hear its own frames. Junk datagrams are counted, not raised.
+no root; `@INTERFACE` after the port makes it leave this machine. A node does not hear its own
+frames. Junk datagrams are counted, not raised.
 python-can's own programs find it as `can_logger -i saddlewalk_udp`.
 """
 
@@ -23,28 +24,35 @@ DEFAULT_GROUP = "239.74.163.2"
 DEFAULT_PORT = 43113
 SOCKETCAN_CHANNEL = "vcan0"
 
-_LOOPBACK = "127.0.0.1"
+_LOOPBACK = "lo"
 _DATAGRAM_MAX = 65535
 _RECEIVE_BUFFER = 1 << 20
-_SIOCGIFFLAGS, _IFF_UP = 0x8913, 0x1
+_SIOCGIFFLAGS, _SIOCGIFADDR, _IFF_UP = 0x8913, 0x8915, 0x1
+_IP_MULTICAST_ALL = 49  # which Python's socket does not name
 
 
 class LoopbackUdpBus(can.BusABC):
     """CAN frames as UDP multicast datagrams on the loopback interface.
 
-    channel is "GROUP:PORT". `malformed` counts datagrams that were no frame.
+    channel is "GROUP:PORT" or "GROUP:PORT@INTERFACE". `malformed` counts datagrams that were no
+    frame.
     """
 
     def __init__(self, channel: str = f"{DEFAULT_GROUP}:{DEFAULT_PORT}", **kwargs: object) -> None:
-        self._address = _address(str(channel))
+        group, _, interface = str(channel).partition("@")
+        interface = interface or _LOOPBACK
+        self._address = _address(group)
         self.malformed = 0
-        self.channel_info = "UDP {}:{} on loopback".format(*self._address)
+        reach = "on loopback" if interface == _LOOPBACK else f"on {interface}: leaves this machine"
+        self.channel_info = f"UDP {group} {reach}"
         try:
-            self._receiving = _receiving_socket(self._address)
-            self._sending = _sending_socket()
+            place = _interface(interface)
+            self._receiving = _receiving_socket(self._address, place)
+            self._sending = _sending_socket(place, hops=int(interface != _LOOPBACK))
         except OSError as error:
             raise UserError(
-                f"CAN: {self.channel_info} cannot be opened ({error.strerror}): {_remedy(error)}"
+                f"CAN: UDP {group} on {interface} cannot be opened ({error.strerror}): "
+                f"{_remedy(error, interface)}"
             ) from error
         self._own_address = self._sending.getsockname()
         super().__init__(channel, **kwargs)
@@ -99,30 +107,51 @@ def _address(channel: str) -> tuple[str, int]:
     return group, number
 
 
-def _remedy(error: OSError) -> str:
+def _remedy(error: OSError, interface: str) -> str:
     if error.errno in (errno.EADDRINUSE, errno.EACCES):
         return "give another --can udp:GROUP:PORT"
-    return "loopback must be up, `sudo ip link set lo up`"
+    what = "loopback" if interface == _LOOPBACK else "the interface"
+    return f"{what} must be up, `sudo ip link set {interface} up`"
 
 
-def _receiving_socket(address: tuple[str, int]) -> socket.socket:
-    """Bound to the group: a socket bound to any address also hears the port's other groups."""
+def _interface(name: str) -> tuple[str, int]:
+    """Its address and its index. Raises OSError if it has none."""
+    request = struct.pack("16sH22x", name.encode()[:15], socket.AF_INET)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        answer = fcntl.ioctl(probe, _SIOCGIFADDR, request)
+    return socket.inet_ntoa(answer[20:24]), socket.if_nametoindex(name)
+
+
+def _membership(group: str, interface: tuple[str, int]) -> bytes:
+    """The kernel's `struct ip_mreqn`."""
+    address, index = interface
+    return struct.pack("4s4si", socket.inet_aton(group), socket.inet_aton(address), index)
+
+
+def _receiving_socket(address: tuple[str, int], interface: tuple[str, int]) -> socket.socket:
+    """Bound to the group: a socket bound to any address also hears the port's other groups.
+
+    And heard on that interface alone: by default a group that anyone joined elsewhere is heard
+    from there too.
+    """
     udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     udp.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER)
     udp.bind(address)
-    membership = socket.inet_aton(address[0]) + socket.inet_aton(_LOOPBACK)
+    udp.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
+    membership = _membership(address[0], interface)
     udp.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
     return udp
 
 
-def _sending_socket() -> socket.socket:
+def _sending_socket(interface: tuple[str, int], hops: int) -> socket.socket:
     """Its own port tells this node's frames from all others."""
     udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     udp.setblocking(False)
-    udp.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
-    udp.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(_LOOPBACK))
-    udp.bind((_LOOPBACK, 0))
+    udp.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, hops)
+    leaving = _membership("0.0.0.0", interface)
+    udp.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, leaving)
+    udp.bind((interface[0], 0))
     return udp
 
 
@@ -154,7 +183,8 @@ def open_bus(spec: str = "auto") -> can.BusABC:
     """A bus that does not hear its own frames. spec is one of
 
     `auto`: SocketCAN vcan0 if it is up, else `udp`; `socketcan:INTERFACE`; `udp`;
-    `udp:GROUP:PORT`. Raises UserError for another spec or an interface that cannot be opened.
+    `udp:GROUP:PORT`; `udp:GROUP:PORT@INTERFACE`, which leaves this machine. Raises UserError for
+    another spec or an interface that cannot be opened.
     """
     kind, _, rest = spec.partition(":")
     if spec == "auto" and _socketcan_is_up(SOCKETCAN_CHANNEL):

@@ -25,7 +25,7 @@ from host_node import (
 )
 from private_test_network import bring_up, in_private_network, route, take_down, unroute
 from saddlewalk import paths
-from saddlewalk.bus import private_udp
+from saddlewalk.bus import describe, private_udp
 from saddlewalk.lcm_types import plan_t, status_t
 from saddlewalk.wire import WIRE_VERSION, Receiver, frame_crc
 
@@ -329,7 +329,8 @@ def test_an_interface_that_is_named_is_said_to_leave_this_machine():
         host.stop()  # it is down
     subprocess.run(["ip", *"link set d0 up".split()], check=True)
     with Host("--lcm=none", spec=f"{spec}@d0") as host:
-        assert f"CAN UDP {spec[4:]}@d0 which leaves this machine: " in host.first_line
+        assert describe(host.bus) == f"UDP {spec[4:]} on d0: leaves this machine"
+        assert f"CAN UDP {spec[4:]}@d0, which leaves this machine: " in host.first_line
         assert len(host.tick()) == 21
     with Host("--lcm=none", spec=f"{spec}@lo") as host:
         assert f"CAN UDP {spec[4:]}@lo on loopback;" in host.first_line
