@@ -92,6 +92,17 @@ def test_cansend_moves_the_firmware():
         assert tick["HEALTH"]["REJECTED_FRAMES"] == 0
 
 
+def test_the_readme_cansend_starts_a_walk():
+    readme = (paths.CHECKOUT / "README.md").read_text()
+    with lockstep(spec=CLASSIC) as host:
+        run(re.search(r"^ +(cansend vcan0 \S+)", readme, re.MULTILINE)[1])
+        host.measure()
+        tick = host.tick()
+        assert tick["COMMAND"]["SPEED"] == pytest.approx(1.2)
+        assert tick["PLAN_EVENTS"]["MODE"] == 1
+        assert " 1 obeyed" in host.stop()
+
+
 def test_cansend_cannot_harm_the_firmware():
     classic = ["110#", "110#11", "110#R", "110#R8", "00000110#1122334455667788", "7FF#00"]
     for spec, strangers in (
