@@ -43,6 +43,12 @@ static void test_default_is_the_paper_s_and_passes(void)
     ASSERT_SAME_FLOAT(1.0f, config.step_length_factor_right);
     ASSERT_SAME_FLOAT(1.0f, config.step_width_factor_left);
     ASSERT_SAME_FLOAT(1.0f, config.step_width_factor_right);
+    ASSERT_SAME_FLOAT(1.0f, config.bos_factor);
+    ASSERT_SAME_FLOAT(1.0f, config.ankle_work_factor);
+    ASSERT_SAME_FLOAT(0.0f, config.recovery_margin_m);
+    ASSERT_SAME_FLOAT(0.1f, config.caution_score);
+    ASSERT_SAME_FLOAT(0.13f, config.caution_xcom_ap_m);
+    ASSERT_SAME_FLOAT(0.07f, config.caution_xcom_ml_m);
     TEST_ASSERT_EQUAL_INT(SADDLE_ANKLE_ERF, config.ankle);
 }
 
