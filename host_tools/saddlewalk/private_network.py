@@ -37,12 +37,12 @@ def enter() -> None:
     os.execvp(_NAMESPACE[0], [*_NAMESPACE, *again])
 
 
-def bring_up_loopback(control: socket.socket, up: bool = True) -> None:
+def bring_up(control: socket.socket, interface: bytes = b"lo", up: bool = True) -> None:
     """Or take it down, and every route through it."""
-    request = struct.pack("16sh22x", b"lo", 0)
+    request = struct.pack("16sh22x", interface, 0)
     flags = struct.unpack("16sh22x", fcntl.ioctl(control, _SIOCGIFFLAGS, request))[1]
     flags = flags | _IFF_UP if up else flags & ~_IFF_UP
-    fcntl.ioctl(control, _SIOCSIFFLAGS, struct.pack("16sh22x", b"lo", flags))
+    fcntl.ioctl(control, _SIOCSIFFLAGS, struct.pack("16sh22x", interface, flags))
 
 
 def route_multicast(control: socket.socket, request: int = _SIOCADDRT) -> None:
@@ -66,6 +66,6 @@ def route_multicast(control: socket.socket, request: int = _SIOCADDRT) -> None:
 
 if __name__ == "__main__":
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as network:
-        bring_up_loopback(network)
+        bring_up(network)
         route_multicast(network)
     os.execv(sys.argv[1], sys.argv[1:])

@@ -1,9 +1,11 @@
 """Tests that take a network away: in a child process with a network of its own."""
 
 import ctypes
+import fcntl
 import functools
 import os
 import socket
+import struct
 import traceback
 from collections.abc import Callable
 
@@ -12,6 +14,7 @@ import pytest
 from saddlewalk import private_network
 
 _CLONE_NEWUSER, _CLONE_NEWNET = 0x10000000, 0x40000000
+_SIOCSIFNAME = 0x8923
 _NOT_POSSIBLE, _FAILED = 77, 1
 
 
@@ -44,17 +47,24 @@ def _run(test: Callable[[], None]) -> int:
     return 0
 
 
-def bring_up() -> None:
-    """Loopback, and the multicast route to it."""
+def bring_up(loopback: str = "lo") -> None:
+    """Loopback, and the multicast route to it unless it has another name."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as control:
-        private_network.bring_up_loopback(control)
-        private_network.route_multicast(control)
+        private_network.bring_up(control, loopback.encode())
+        if loopback == "lo":
+            private_network.route_multicast(control)
 
 
 def take_down() -> None:
     """Loopback, and with it every route."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as control:
-        private_network.bring_up_loopback(control, up=False)
+        private_network.bring_up(control, up=False)
+
+
+def rename_loopback(name: str) -> None:
+    """While it is down."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as control:
+        fcntl.ioctl(control, _SIOCSIFNAME, struct.pack("16s16s8x", b"lo", name.encode()))
 
 
 def unroute() -> None:
