@@ -149,8 +149,8 @@ def _width_m(stance: Placement, to: Placement) -> float:
 def _sways(recording: Recording, placed: list[Placement]) -> tuple[np.ndarray, dict[str, str]]:
     """One for each stride from passing a foot to passing it again, or why there is none.
 
-    Least squares in the plan's phase: recorded CoMs sway farthest a little later, which the plan
-    can't follow.
+    Least squares in the plan's phase: people sway farthest up to a tenth of a stride before or
+    after they pass the foot, which the plan does not.
     """
     sways_m = []
     for stance, other, again in zip(placed, placed[1:], placed[2:], strict=False):

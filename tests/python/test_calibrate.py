@@ -529,6 +529,18 @@ def test_follow_compares_the_foot_that_swings(write, tmp_path):
     assert rows["default"]["landing_m"] < 0.002
 
 
+def test_calibration_brings_recorded_people_s_landings_nearer(tmp_path):
+    trials = sorted(map(str, (CHECKOUT.parent / "shared/data/gait").glob("*__*.csv")))
+    if not trials:
+        pytest.skip("no recorded trials beside this checkout")
+    out = tmp_path / "follow.csv"
+    assert main(["follow", *trials, "--out", str(out)]) == 0
+    landings_m = np.array([row["landing_m"] for _, row in read_table(str(out), ["landing_m"])])
+    default_m, calibrated_m = landings_m.reshape(-1, 2).T
+    assert np.all(calibrated_m <= default_m)
+    assert np.median(calibrated_m) < 0.3 * np.median(default_m)
+
+
 def test_follow_says_that_a_speed_is_out_of_reach(write, tmp_path, capsys):
     small = {"half_step_slope_s": 0.05}
     config = tmp_path / "small.toml"
