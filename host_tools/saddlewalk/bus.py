@@ -174,9 +174,11 @@ def _open_socketcan(channel: str) -> can.BusABC:
             " give another, or --can udp"
         )
     try:
-        return can.Bus(interface="socketcan", channel=channel, fd=True)
+        bus = can.Bus(interface="socketcan", channel=channel, fd=True)
     except (OSError, can.CanError) as error:
         raise UserError(f"CAN interface {channel} cannot be opened ({error}): try udp") from error
+    bus.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER)
+    return bus
 
 
 def open_bus(spec: str = "auto") -> can.BusABC:

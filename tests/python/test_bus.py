@@ -57,6 +57,13 @@ class TestBus:
                 one.send(frame(identifier))
             assert [other.recv(WAIT_S).arbitration_id for _ in identifiers] == list(identifiers)
 
+    def test_frames_wait_for_a_node_that_is_busy(self, nodes):
+        one, other = nodes
+        identifiers = range(400)  # a second of a walk
+        for identifier in identifiers:
+            one.send(frame(identifier))
+        assert [other.recv(WAIT_S).arbitration_id for _ in identifiers] == list(identifiers)
+
     @pytest.mark.parametrize(
         "sent",
         [
