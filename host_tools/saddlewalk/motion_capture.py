@@ -132,7 +132,10 @@ def _axes(source: str, com_m: np.ndarray, heel_m: np.ndarray, toe_m: np.ndarray)
     Up is the axis along which the pelvis is above the heels. Forward is the way that the pelvis
     goes or, on a treadmill, that the feet point.
     """
-    above_m = np.nanmedian(com_m - np.nanmean(heel_m, axis=0), axis=0)
+    above_m = (com_m - heel_m)[np.isfinite(com_m - heel_m).all(axis=2)]
+    if not len(above_m):
+        raise UserError(f"{source}: pelvis and heels are never seen together")
+    above_m = np.median(above_m, axis=0)
     up = np.zeros(3)
     up[np.abs(above_m).argmax()] = np.sign(above_m[np.abs(above_m).argmax()])
     seen = np.flatnonzero(np.isfinite(com_m).all(axis=1))

@@ -119,8 +119,11 @@ def _both_seen(points_m: np.ndarray) -> bool:
 
 
 def _one_point(recording: Recording) -> str | None:
-    apart_m = np.nanmedian(np.linalg.norm(recording.toe_m - recording.heel_m, axis=2))
-    return "heel and toe are one point" if apart_m < ONE_POINT_M else None
+    apart_m = np.linalg.norm(recording.toe_m - recording.heel_m, axis=2)
+    apart_m = apart_m[np.isfinite(apart_m)]
+    if not len(apart_m):
+        return "heel and toe are never seen together"
+    return "heel and toe are one point" if np.median(apart_m) < ONE_POINT_M else None
 
 
 def _strikes_in_turn(
