@@ -4,10 +4,14 @@ CoM and CoP are the paper's: the CoM midway between the centres of the front and
 markers, a foot's CoP midway between the heel and the middle of the metatarsus.
 """
 
+import importlib.util
 import math
+import multiprocessing
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -163,12 +167,21 @@ def _belt_speed(time_s: np.ndarray, heel_x_m: np.ndarray) -> float:
 
 
 def _read_c3d(path: Path) -> Capture:
-    try:
-        import ezc3d
-    except ImportError as error:
-        raise UserError(f"{path}: C3D needs ezc3d: pip install saddlewalk[c3d]") from error
+    """In a process of its own: ezc3d may crash on a damaged file, and takes its process along."""
+    if importlib.util.find_spec("ezc3d") is None:
+        raise UserError(f"{path}: C3D needs ezc3d: pip install saddlewalk[c3d]")
     if not path.is_file():
         raise UserError(f"{path}: no such file")
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as reader:
+        try:
+            return reader.submit(_parse_c3d, path).result()
+        except BrokenProcessPool as error:
+            raise UserError(f"{path}: not a C3D file: ezc3d crashed on it") from error
+
+
+def _parse_c3d(path: Path) -> Capture:
+    import ezc3d
+
     try:
         trial = ezc3d.c3d(str(path))
         point = trial["parameters"]["POINT"]

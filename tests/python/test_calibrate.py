@@ -425,8 +425,16 @@ def test_bad_trc_is_named(old, new, named, tmp_path, capsys):
 
 
 def test_c3d_without_ezc3d_says_what_to_install(monkeypatch, tmp_path, capsys):
-    monkeypatch.setitem(__import__("sys").modules, "ezc3d", None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     assert "pip install saddlewalk[c3d]" in refusal(capsys, "calibrate", str(tmp_path / "a.c3d"))
+
+
+def test_c3d_reader_that_crashes_is_an_error_of_the_file(monkeypatch, tmp_path, capsys):
+    (tmp_path / "ezc3d.py").write_text("import os\nos.abort()\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    path = tmp_path / "walk.c3d"
+    path.touch()
+    assert "walk.c3d: not a C3D file: ezc3d crashed" in refusal(capsys, "calibrate", str(path))
 
 
 @pytest.fixture
