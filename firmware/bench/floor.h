@@ -1,0 +1,27 @@
+/** The floor of an update: its transcendental calls and square roots alone, with their arguments. */
+#ifndef SADDLE_BENCH_FLOOR_H
+#define SADDLE_BENCH_FLOOR_H
+
+#include <stdint.h>
+
+/** In the order of the arguments. A square root within another function is part of that. */
+enum {
+    SADDLE_BENCH_SIN,
+    SADDLE_BENCH_COS,
+    SADDLE_BENCH_ASIN,
+    SADDLE_BENCH_ERF,
+    SADDLE_BENCH_EXP,
+    SADDLE_BENCH_SQRT,
+    SADDLE_BENCH_FUNCTIONS
+};
+
+/** How often an update calls each function. */
+typedef struct {
+    uint32_t count[6];
+} saddle_bench_calls_t;
+
+/** The calls once more; arguments: those of each function, one function after the other. Returns the
+ *  sum of the results, and how many arguments were used in *used. */
+float saddle_bench_floor(const saddle_bench_calls_t *calls, const float *arguments, uint32_t *used);
+
+#endif

@@ -1,0 +1,47 @@
+#include "planning.h"
+
+#include <time.h>
+
+static uint64_t now_ns(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+}
+
+uint64_t saddle_bench_plan_ns(saddle_context_t *context, const saddle_command_t *command,
+                              uint32_t period_us, uint32_t instants, saddle_output_t *outputs,
+                              saddle_scores_t *scores)
+{
+    saddle_input_t input = {.command = *command};
+    input.measurement.com.age_us = SADDLE_AGE_NEVER_US;
+    for (int side = 0; side < 2; side++) {
+        input.measurement.foot[side].age_us = SADDLE_AGE_NEVER_US;
+    }
+    input.time_us = context->last_time_us;
+    const uint64_t start_ns = now_ns();
+    if (saddle_join(context, command) != SADDLE_OK) {
+        return 0;
+    }
+    for (uint32_t k = 0; k < instants; k++) {
+        if (saddle_tick(context, &input, &outputs[k]) != SADDLE_OK) {
+            return 0;
+        }
+        (void)saddle_score_plan(context, &outputs[k].plan, &scores[k]);
+        input.time_us += period_us;
+    }
+    return now_ns() - start_ns;
+}
+
+uint64_t saddle_bench_floor_ns(const saddle_bench_calls_t *calls, const float *arguments,
+                               uint32_t updates, float *sum)
+{
+    const uint64_t start_ns = now_ns();
+    *sum = 0.0f;
+    for (uint32_t k = 0; k < updates; k++) {
+        uint32_t used;
+        *sum += saddle_bench_floor(&calls[k], arguments, &used);
+        arguments += used;
+    }
+    return now_ns() - start_ns;
+}
