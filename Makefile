@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo test test-clang test-sanitize test-socketcan test-flood samples format clean help
+.PHONY: build demo test test-clang test-sanitize test-socketcan test-flood samples neighbours format clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -43,6 +43,8 @@ SANITIZED = LD_PRELOAD="$$(gcc -print-file-name=libasan.so) libstdc++.so.6" \
 
 samples: .venv/installed-samples ## recorded walks, for saddlewalk replay --sample
 
+neighbours: .venv/installed-neighbours ## the walking QPs that saddlewalk bench stands beside the core
+
 format: .venv/installed-test ## lay out the Python code
 	@$(BIN)/ruff check --fix .
 	@$(BIN)/ruff format .
@@ -66,7 +68,7 @@ build-sanitize/build.ninja: PRESET := sanitize
 
 # .venv/installed-EXTRA: this package, editable, and what its optional dependency EXTRA names.
 .venv/installed-build: .venv/bin/pip
-.venv/installed-test .venv/installed-samples: .venv/installed-build
+.venv/installed-test .venv/installed-samples .venv/installed-neighbours: .venv/installed-build
 .venv/installed-%: pyproject.toml requirements.lock firmware/core/include/saddlewalk/version.h
 	@echo "Installing Python packages: $*"
 	@PIP_CONSTRAINT=requirements.lock $(PIP) install --editable .[$*]

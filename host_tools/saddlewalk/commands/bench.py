@@ -1,0 +1,47 @@
+"""`saddlewalk bench`: planning time of the core beside its neighbours, and its instructions."""
+
+import argparse
+from typing import Any
+
+from saddlewalk.options import whole_number_in
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser(
+        "bench",
+        help="planning time of the core beside others, and its instructions",
+        description="Measure what the paper measured: the time to plan 1 and 10 strides with "
+        "scores, gravity and margins. Beside the core: the same equations in numpy and GNU Octave, "
+        "walking QPs, placo, and a floor. What is not installed is named and left out. Shares this "
+        "machine's processor with whatever else runs; the instructions, by valgrind, repeat.",
+    )
+    parser.add_argument(
+        "--rounds",
+        type=whole_number_in(1, 10**5),
+        default=50,
+        metavar="N",
+        help="how often each plan is made, in turns (default 50)",
+    )
+    parser.add_argument("--json", metavar="FILE", help="the same as JSON; - for standard output")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    import json
+
+    from saddlewalk import bench_report, instructions
+    from saddlewalk.bench import measure
+    from saddlewalk.neighbours import MissingError
+    from saddlewalk.table import write_text
+
+    timings = measure(args.rounds)
+    try:
+        groups, missing = instructions.count(), None
+    except MissingError as error:
+        groups, missing = [], str(error)
+    report = bench_report.Report(args.rounds, timings, groups, missing)
+    if args.json is not None:
+        write_text("--json", args.json, json.dumps(report.as_dict(), indent=2) + "\n")
+    if args.json != "-":
+        print(*report.lines(), sep="\n")
+    return 0
