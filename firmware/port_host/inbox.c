@@ -63,7 +63,7 @@ void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *
         saddle_command_t command;
         saddle_wire_decode_command(data, &command);
         saddle_inbox_take_command(inbox, SADDLE_SOURCE_CAN, &command, time_us);
-    } else if (message != SADDLE_WIRE_NONE) {
+    } else if (message >= SADDLE_WIRE_MEASURED_COM && message <= SADDLE_WIRE_MEASURED_RIGHT) {
         take_measured(inbox, message, data, time_us);
     } else {
         announce_first_bad_version(&inbox->receiver, bad_version_before);
@@ -108,5 +108,5 @@ uint32_t saddle_inbox_rejected(const saddle_inbox_t *inbox)
 {
     const saddle_wire_receiver_t *receiver = &inbox->receiver;
     return receiver->malformed + receiver->bad_crc + receiver->bad_version +
-           receiver->bad_counter + inbox->commands_unusable + inbox->commands_ignored;
+           receiver->bad_counter + receiver->bad_code + inbox->commands_unusable + inbox->commands_ignored;
 }

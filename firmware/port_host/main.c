@@ -10,6 +10,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define EXIT_BAD_INPUT 2
@@ -67,6 +68,9 @@ static void print_start(const saddle_options_t *options, const saddle_runner_t *
     printf(SADDLE_PROGRAM " " SADDLE_VERSION ": CAN %s; LCM %s; clock %s", runner->bus->description,
            options->lcm != NULL ? runner->lcm->description : "none",
            options->lockstep ? "lockstep" : "realtime");
+    if (options->command_key != NULL) {
+        printf("; commands must be vouched for");
+    }
     if (realtime->fifo_priority != 0) {
         printf("; SCHED_FIFO %d", realtime->fifo_priority);
     }
@@ -74,17 +78,54 @@ static void print_start(const saddle_options_t *options, const saddle_runner_t *
     fflush(stdout);
 }
 
-static void run(const saddle_options_t *options, saddle_bus_t *bus, saddle_lcm_port_t *lcm)
+/** 32 hexadecimal digits, in a file that nobody else may read. */
+static bool read_key(const char *path, uint8_t key[SADDLE_CMAC_LENGTH])
+{
+    struct stat about;
+    FILE *file = fopen(path, "r");
+    bool good = file != NULL && fstat(fileno(file), &about) == 0 &&
+                (about.st_mode & (S_IRWXG | S_IRWXO)) == 0;
+    for (size_t i = 0; good && i < SADDLE_CMAC_LENGTH; ++i) {
+        good = fscanf(file, "%2hhx", &key[i]) == 1;
+    }
+    if (file != NULL) {
+        fclose(file);
+    }
+    return good;
+}
+
+static bool demand_codes(saddle_runner_t *runner, const char *path)
+{
+    uint8_t key[SADDLE_CMAC_LENGTH];
+    if (path == NULL) {
+        return true;
+    }
+    if (!read_key(path, key)) {
+        fprintf(stderr,
+                SADDLE_PROGRAM ": --command-key %s: give a file with 32 hexadecimal digits that "
+                               "only its owner may read (chmod 600)\n",
+                path);
+        return false;
+    }
+    saddle_runner_demand_codes(runner, key);
+    return true;
+}
+
+static int run(const saddle_options_t *options, saddle_bus_t *bus, saddle_lcm_port_t *lcm)
 {
     saddle_runner_t runner;
     saddle_runner_init(&runner, &options->config, options->lockstep, options->command_from, bus,
                        lcm, stop_pipe[0]);
+    if (!demand_codes(&runner, options->command_key)) {
+        return EXIT_BAD_INPUT;
+    }
     /* After LCM has its threads: they need no such place on the processor. */
     runner.realtime = saddle_realtime_enter(options->fifo_priority);
     print_start(options, &runner);
     saddle_runner_run(&runner);
     const saddle_report_t report = saddle_runner_report(&runner);
     saddle_report_print(&report);
+    return 0;
 }
 
 int main(int argc, char *argv[])
@@ -103,8 +144,8 @@ int main(int argc, char *argv[])
     if (!open_ports(&options, &bus, &lcm)) {
         return EXIT_BAD_INPUT;
     }
-    run(&options, &bus, &lcm);
+    const int status = run(&options, &bus, &lcm);
     saddle_lcm_close(&lcm);
     saddle_bus_close(&bus);
-    return 0;
+    return status;
 }

@@ -116,6 +116,7 @@ static void print_help(const saddle_config_t *config)
          "  --lcm URL          default " DEFAULT_LCM "; none: without LCM\n"
          "  --command-from X   whose commands are obeyed: can; lcm; first (default): the first\n"
          "                     that commands, until it is silent and the walk has ended\n"
+         "  --command-key FILE obey only commands by CAN that are vouched for with this key\n"
          "  --fifo PRIORITY    schedule by SCHED_FIFO, 1 to 99, and keep all memory in place\n"
          "  --clock CLOCK      realtime (default); lockstep: one tick per set of measurements\n"
          "  --ankle ANKLE      ankle strategy: erf (default), rigid, cycloid\n"
@@ -138,6 +139,7 @@ static bool take_option(saddle_options_t *options, int letter, char *argv[])
     case 'a': return set_ankle(options, optarg);
     case 's': return set_field(options, optarg);
     case 'm': return set_command_from(options, optarg);
+    case 'y': options->command_key = optarg; return true;
     case 'f': return set_fifo(options, optarg);
     case ':':
         fprintf(stderr, SADDLE_PROGRAM ": %s: give a value (see --help)\n", argv[optind - 1]);
@@ -157,6 +159,10 @@ static bool is_consistent(const saddle_options_t *options)
         return complain("command-from", "lcm",
                         "can or first: there are no commands by LCM in lockstep or without LCM");
     }
+    if (options->command_from == SADDLE_SOURCE_LCM && options->command_key != NULL) {
+        return complain("command-key", options->command_key,
+                        "--command-from can: a command by LCM cannot be vouched for");
+    }
     if (name != NULL) {
         fprintf(stderr, SADDLE_PROGRAM ": --set %s=%.9g: give a value that suits the others\n",
                 name, (double)value_of(config, find_field(name, strlen(name))));
@@ -170,7 +176,8 @@ saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *
         {"can", required_argument, NULL, 'c'},   {"lcm", required_argument, NULL, 'l'},
         {"clock", required_argument, NULL, 'k'}, {"ankle", required_argument, NULL, 'a'},
         {"set", required_argument, NULL, 's'},   {"command-from", required_argument, NULL, 'm'},
-        {"fifo", required_argument, NULL, 'f'},  {"help", no_argument, NULL, 'h'},
+        {"fifo", required_argument, NULL, 'f'},  {"command-key", required_argument, NULL, 'y'},
+        {"help", no_argument, NULL, 'h'},
         {NULL, 0, NULL, 0}};
     *options = (saddle_options_t){
         .can = "auto",

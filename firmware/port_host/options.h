@@ -10,6 +10,7 @@ typedef struct {
     const char *lcm; /**< an LCM URL; NULL: no LCM */
     bool lockstep;
     saddle_source_t command_from; /**< NONE: the first that commands */
+    const char *command_key;      /**< file with the key of the codes demanded; NULL: none are */
     int fifo_priority;            /**< 0: the ordinary scheduler */
     saddle_config_t config;
 } saddle_options_t;

@@ -107,6 +107,8 @@ static void tell_inputs(saddlewalk_status_t *message, const saddle_inbox_t *inbo
     message->frames_bad_counter = receiver->bad_counter;
     message->frames_bad_version = receiver->bad_version;
     message->other_version = receiver->other_version;
+    message->codes_demanded = receiver->guard.demanded;
+    message->frames_bad_code = receiver->bad_code;
 }
 
 static void tell_transports(saddlewalk_status_t *message, const saddle_bus_t *bus,
@@ -146,11 +148,12 @@ void saddle_report_print(const saddle_report_t *report)
     const saddle_wire_receiver_t *receiver = &inbox->receiver;
     printf("%" PRIu32 " ticks, %" PRIu32 " late, %" PRIu32 " missed; frames: %" PRIu32
            " accepted, rejected %" PRIu32 " bad CRC, %" PRIu32 " bad counter, %" PRIu32
-           " bad version, %" PRIu32 " malformed; commands: %" PRIu32 " obeyed, %" PRIu32
+           " bad version, %" PRIu32 " bad code, %" PRIu32 " malformed; commands: %" PRIu32 " obeyed, %" PRIu32
            " unusable, %" PRIu32 " ignored; not sent: %" PRIu32 " frames without room, %" PRIu32
            " without link, %" PRIu64 " LCM messages\n",
            timing->ticks, timing->late_ticks, timing->missed_ticks, receiver->accepted,
-           receiver->bad_crc, receiver->bad_counter, receiver->bad_version, receiver->malformed,
+           receiver->bad_crc, receiver->bad_counter, receiver->bad_version, receiver->bad_code,
+           receiver->malformed,
            inbox->commands_obeyed, inbox->commands_unusable, inbox->commands_ignored,
            report->bus->no_room, report->bus->no_link, report->lcm->not_sent);
 }

@@ -2,6 +2,7 @@
 
 #include "clock.h"
 #include <string.h>
+#include <sys/random.h>
 #include <sys/select.h>
 
 /** Taken at most between two looks at the clock, so that a flood cannot hold up a tick. */
@@ -10,6 +11,9 @@
 
 /** The configuration is published with every so many ticks, about once a second. */
 #define CONFIG_TICKS 12
+
+/** A session ends in good time before its freshness does: this leaves some minutes. */
+#define FRESHNESS_END 60000u
 
 /** The time of tick n in lockstep. */
 static uint64_t lockstep_us(const saddle_runner_t *runner)
@@ -58,6 +62,23 @@ static void take_frames(saddle_runner_t *runner)
     }
 }
 
+static void send_frame(saddle_runner_t *runner, const saddle_frame_t *frame)
+{
+    saddle_bus_frame_t raw = {.id = frame->id, .length = sizeof frame->data};
+    memcpy(raw.data, frame->data, sizeof raw.data);
+    saddle_bus_send(runner->bus, &raw);
+}
+
+static void send_session(saddle_runner_t *runner)
+{
+    const saddle_wire_receiver_t *receiver = &runner->inbox.receiver;
+    saddle_frame_t frame;
+    if (receiver->guard.demanded) {
+        saddle_wire_encode_session(receiver, (uint8_t)runner->timing.ticks, &frame);
+        send_frame(runner, &frame);
+    }
+}
+
 static void send_frames(saddle_runner_t *runner, const saddle_output_t *output)
 {
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
@@ -65,9 +86,7 @@ static void send_frames(saddle_runner_t *runner, const saddle_output_t *output)
     const saddle_wire_health_t health = saddle_report_can(&report);
     saddle_wire_encode_output(output, &health, (uint8_t)runner->timing.ticks, frames);
     for (size_t i = 0; i < SADDLE_WIRE_OUTPUT_FRAMES; ++i) {
-        saddle_bus_frame_t frame = {.id = frames[i].id, .length = sizeof frames[i].data};
-        memcpy(frame.data, frames[i].data, sizeof frame.data);
-        saddle_bus_send(runner->bus, &frame);
+        send_frame(runner, &frames[i]);
     }
 }
 
@@ -84,6 +103,23 @@ static void publish(saddle_runner_t *runner, const saddle_input_t *input,
     saddle_lcm_publish(runner->lcm, input, output, &status, &health);
 }
 
+/** Without a number that cannot be foretold, the session before goes on. */
+static void open_session(saddle_runner_t *runner)
+{
+    uint32_t session;
+    if (getrandom(&session, sizeof session, GRND_NONBLOCK) == (ssize_t)sizeof session) {
+        saddle_wire_open_session(&runner->inbox.receiver, session);
+    }
+}
+
+/** Whoever commands next may be new, and counts from 1. */
+static bool is_session_over(const saddle_runner_t *runner, const saddle_output_t *output)
+{
+    const uint16_t freshness = runner->inbox.receiver.guard.freshness;
+    const bool stale = (output->faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) != 0u;
+    return freshness >= FRESHNESS_END || (stale && freshness > 0u);
+}
+
 /** Nobody commands any more, and the walk that was commanded has come to its end. */
 static bool is_commandless(const saddle_output_t *output)
 {
@@ -96,6 +132,10 @@ static void tick(saddle_runner_t *runner, uint64_t time_us)
     saddle_output_t output;
     const saddle_input_t *input = saddle_inbox_read(&runner->inbox, time_us);
     (void)saddle_tick(&runner->context, input, &output); /* the status is part of the output */
+    if (is_session_over(runner, &output)) {
+        open_session(runner);
+    }
+    send_session(runner);
     send_frames(runner, &output);
     publish(runner, input, &output);
     saddle_bus_maintain(runner->bus);
@@ -190,6 +230,13 @@ void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, 
     if (!lockstep) { /* in lockstep commands come by CAN, in order with the measurements */
         saddle_lcm_subscribe(lcm, take_lcm_command, runner);
     }
+}
+
+void saddle_runner_demand_codes(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH])
+{
+    saddle_inbox_init(&runner->inbox, SADDLE_SOURCE_CAN);
+    saddle_wire_demand_codes(&runner->inbox.receiver, key);
+    open_session(runner);
 }
 
 void saddle_runner_run(saddle_runner_t *runner)

@@ -35,6 +35,9 @@ void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, 
                         saddle_source_t command_from, saddle_bus_t *bus, saddle_lcm_port_t *lcm,
                         int stop_fd);
 
+/** Demand codes of whoever commands, docs/authentication.md, which LCM has none of. */
+void saddle_runner_demand_codes(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH]);
+
 /** Run until stop_fd is readable; a tick that has begun is finished. */
 void saddle_runner_run(saddle_runner_t *runner);
 

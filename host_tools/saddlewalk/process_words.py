@@ -8,6 +8,7 @@ REFUSED = {
     "bad CRC": "frames_bad_crc",
     "bad counter": "frames_bad_counter",
     "bad version": "frames_bad_version",
+    "bad code": "frames_bad_code",
     "unusable commands": "commands_unusable",
     "commands of the source without authority": "commands_ignored",
 }

@@ -87,7 +87,7 @@ class _Node:
         self.inputs += 1
         if message == lib.SADDLE_WIRE_COMMAND:
             self._take_command(data)
-        else:
+        elif message != lib.SADDLE_WIRE_COMMAND_CODE:
             self._take_measured(message, data)
 
     def _take_command(self, data: bytes) -> None:

@@ -117,9 +117,13 @@ class Sender:
         if values.keys() != expected:
             raise ValueError(f"{name} has {sorted(values)}: give {sorted(expected)}")
         counter = self._counters.get(name, 0)
-        self._counters[name] = (counter + 1) % COUNTERS
+        self.count_from(name, counter + 1)
         data = message.encode(counter, values)
         return can.Message(arbitration_id=message.id, is_extended_id=False, data=data)
+
+    def count_from(self, name: str, counter: int) -> None:
+        """Give the next frame of a message that alive counter, modulo 16."""
+        self._counters[name] = counter % COUNTERS
 
 
 def _follows(counter: int, before: int) -> bool:
@@ -191,6 +195,18 @@ class Receiver:
 def raw_signals(identifier: int, data: bytes) -> dict[str, int]:
     """All signals of a frame as they are on the wire, CRC and COUNTER too, whatever they say."""
     return _by_id[identifier]._codec.decode(data, decode_choices=False, scaling=False)
+
+
+def signals(frame: can.Message) -> dict[str, float]:
+    """All signals but the CRC of a frame of ours, whatever its CRC and its counter say."""
+    return _by_id[frame.arbitration_id].decode(frame.data)
+
+
+def changed(frame: can.Message, **values: float | None) -> can.Message:
+    """A frame of ours with other values of some signals, COUNTER too if given, and sealed anew."""
+    message = _by_id[frame.arbitration_id]
+    data = message.encode(0, message.decode(frame.data) | values)
+    return can.Message(frame.timestamp, message.id, is_extended_id=False, data=data)
 
 
 def message_name(identifier: int) -> str | None:

@@ -107,6 +107,7 @@ static saddle_wire_message_t message_of(uint32_t id)
 {
     switch (id) {
     case SADDLE_CAN_COMMAND_FRAME_ID: return SADDLE_WIRE_COMMAND;
+    case SADDLE_CAN_COMMAND_CODE_FRAME_ID: return SADDLE_WIRE_COMMAND_CODE;
     case SADDLE_CAN_MEASURED_COM_FRAME_ID: return SADDLE_WIRE_MEASURED_COM;
     case SADDLE_CAN_MEASURED_LEFT_FRAME_ID: return SADDLE_WIRE_MEASURED_LEFT;
     case SADDLE_CAN_MEASURED_RIGHT_FRAME_ID: return SADDLE_WIRE_MEASURED_RIGHT;
@@ -129,6 +130,47 @@ static bool speaks_our_version(saddle_wire_receiver_t *receiver, saddle_wire_mes
     return true;
 }
 
+/** One block for the cipher: the session, its freshness, and the frame with its identifier. */
+static uint32_t code_of(const saddle_cmac_key_t *key, uint32_t session, uint16_t freshness,
+                        const uint8_t *command)
+{
+    uint8_t bytes[SADDLE_CMAC_LENGTH] = {
+        (uint8_t)session,          (uint8_t)(session >> 8),        (uint8_t)(session >> 16),
+        (uint8_t)(session >> 24),  (uint8_t)freshness,             (uint8_t)(freshness >> 8),
+        (uint8_t)SADDLE_CAN_COMMAND_FRAME_ID, (uint8_t)(SADDLE_CAN_COMMAND_FRAME_ID >> 8)};
+    uint8_t code[SADDLE_CMAC_LENGTH];
+    for (size_t i = 0; i < SADDLE_WIRE_LENGTH; ++i) {
+        bytes[8u + i] = command[i];
+    }
+    saddle_cmac(key, bytes, sizeof bytes, code);
+    return (uint32_t)code[0] << 24 | (uint32_t)code[1] << 16 | (uint32_t)code[2] << 8 | code[3];
+}
+
+/** A code is tried once. */
+static bool is_authentic(saddle_wire_guard_t *guard, const uint8_t *command)
+{
+    struct saddle_can_command_code_t told;
+    if (!guard->demanded || !guard->waits) {
+        return !guard->demanded;
+    }
+    guard->waits = false;
+    (void)saddle_can_command_code_unpack(&told, guard->frame, SADDLE_WIRE_LENGTH);
+    if (told.counter != saddle_wire_counter(command) || told.freshness <= guard->freshness ||
+        told.code != code_of(&guard->key, guard->session, told.freshness, command)) {
+        return false;
+    }
+    guard->freshness = told.freshness;
+    return true;
+}
+
+static void keep_code(saddle_wire_guard_t *guard, const uint8_t *data)
+{
+    guard->waits = true;
+    for (size_t i = 0; i < SADDLE_WIRE_LENGTH; ++i) {
+        guard->frame[i] = data[i];
+    }
+}
+
 saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint32_t id,
                                          const uint8_t *data, size_t length)
 {
@@ -140,8 +182,12 @@ saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint3
         count = &receiver->bad_crc;
     } else if (!speaks_our_version(receiver, message, data)) {
         count = &receiver->bad_version;
+    } else if (message == SADDLE_WIRE_COMMAND && !is_authentic(&receiver->guard, data)) {
+        count = &receiver->bad_code;
     } else if (!in_step(&receiver->alive[message], saddle_wire_counter(data))) {
         count = &receiver->bad_counter;
+    } else if (message == SADDLE_WIRE_COMMAND_CODE) {
+        keep_code(&receiver->guard, data);
     }
     ++*count;
     return count == &receiver->accepted ? message : SADDLE_WIRE_NONE;
@@ -399,4 +445,32 @@ void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uin
            .contact = measurement->foot[SADDLE_RIGHT].contact,
            .x = RAW(measured_right_x, true, right_m.x),
            .y = RAW(measured_right_y, true, right_m.y));
+}
+
+void saddle_wire_demand_codes(saddle_wire_receiver_t *receiver,
+                              const uint8_t key[SADDLE_CMAC_LENGTH])
+{
+    receiver->guard.demanded = true;
+    saddle_cmac_prepare(&receiver->guard.key, key);
+}
+
+void saddle_wire_open_session(saddle_wire_receiver_t *receiver, uint32_t session)
+{
+    receiver->guard.session = session;
+    receiver->guard.freshness = 0;
+    receiver->guard.waits = false;
+}
+
+void saddle_wire_encode_session(const saddle_wire_receiver_t *receiver, uint8_t counter,
+                                saddle_frame_t *frame)
+{
+    ENCODE(frame, session, SESSION, .counter = counter & COUNTER_MASK,
+           .session = receiver->guard.session, .freshness = receiver->guard.freshness);
+}
+
+void saddle_wire_encode_code(const saddle_cmac_key_t *key, uint32_t session, uint16_t freshness,
+                             const saddle_frame_t *command, saddle_frame_t *frame)
+{
+    ENCODE(frame, command_code, COMMAND_CODE, .counter = saddle_wire_counter(command->data),
+           .freshness = freshness, .code = code_of(key, session, freshness, command->data));
 }

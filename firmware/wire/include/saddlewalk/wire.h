@@ -24,6 +24,7 @@
 #ifndef SADDLEWALK_WIRE_H
 #define SADDLEWALK_WIRE_H
 
+#include <saddlewalk/cmac.h>
 #include <saddlewalk/saddlewalk.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -33,7 +34,7 @@
 #define SADDLE_WIRE_LENGTH 8u
 
 /** Frames of one output: the plan (10), the scores (5), the verdict (2), the process (3), and
- *  HEALTH as the last. */
+ *  HEALTH as the last. SESSION is apart: it is sent only while codes are demanded. */
 #define SADDLE_WIRE_OUTPUT_FRAMES 21u
 
 /** Frames of one measurement: CoM, left foot, right foot. */
@@ -51,6 +52,7 @@ typedef enum {
     SADDLE_WIRE_MEASURED_COM = 1,
     SADDLE_WIRE_MEASURED_LEFT = 2,
     SADDLE_WIRE_MEASURED_RIGHT = 3,
+    SADDLE_WIRE_COMMAND_CODE = 4, /**< kept for the COMMAND that follows; nothing to decode */
     SADDLE_WIRE_MESSAGE_COUNT
 } saddle_wire_message_t;
 
@@ -63,7 +65,7 @@ typedef struct {
     uint32_t latency_us;      /**< of this tick, behind its time */
     uint32_t latency_max_us;  /**< of all */
     uint8_t command_source;   /**< has authority: 0 none, 1 CAN, 2 LCM */
-    uint32_t input_age_us[SADDLE_WIRE_MESSAGE_COUNT];
+    uint32_t input_age_us[SADDLE_WIRE_MEASURED_RIGHT + 1]; /**< by message */
     uint32_t accepted, malformed, bad_crc, bad_version, bad_counter; /**< the receiver's */
 } saddle_wire_health_t;
 
@@ -74,6 +76,16 @@ typedef struct {
     bool seen;
 } saddle_wire_alive_t;
 
+/** What a COMMAND must be vouched for with, docs/authentication.md. */
+typedef struct {
+    bool demanded;
+    saddle_cmac_key_t key;
+    uint32_t session;   /**< a code is good in its session alone */
+    uint16_t freshness; /**< of the last good code; the next must be higher */
+    bool waits;         /**< a code has come and its COMMAND not yet */
+    uint8_t frame[SADDLE_WIRE_LENGTH]; /**< that code's */
+} saddle_wire_guard_t;
+
 /** Caller-owned; start from all zeros. The counts may be read at any time and wrap at 2^32. */
 typedef struct {
     saddle_wire_alive_t alive[SADDLE_WIRE_MESSAGE_COUNT];
@@ -83,6 +95,8 @@ typedef struct {
     uint32_t bad_version; /**< COMMAND of another wire version */
     uint32_t bad_counter; /**< repeated, or out of step */
     uint8_t other_version; /**< of the last one with a bad version */
+    uint32_t bad_code;     /**< COMMAND without a code, or with one that is wrong or not fresh */
+    saddle_wire_guard_t guard;
 } saddle_wire_receiver_t;
 
 /** CRC-8 SAE J1850: polynomial 0x1D, start 0xFF, final inversion. "123456789" gives 0x4B. */
@@ -102,6 +116,19 @@ uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH]);
 saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint32_t id,
                                          const uint8_t *data, size_t length);
 
+/** From now on accept a COMMAND only after a COMMAND_CODE that vouches for it. */
+void saddle_wire_demand_codes(saddle_wire_receiver_t *receiver,
+                              const uint8_t key[SADDLE_CMAC_LENGTH]);
+
+/** Begin a session with a number that cannot be foretold; freshness begins anew. Codes of the
+ *  session before are refused. At the start, when commands have ceased, and in good time before
+ *  the freshness reaches its end. */
+void saddle_wire_open_session(saddle_wire_receiver_t *receiver, uint32_t session);
+
+/** SESSION, for those who command; with every tick while codes are demanded. */
+void saddle_wire_encode_session(const saddle_wire_receiver_t *receiver, uint8_t counter,
+                                saddle_frame_t *frame);
+
 /** Data of an accepted SADDLE_WIRE_COMMAND. The mode is 0 to 15: the core judges it. */
 void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_command_t *command);
 
@@ -119,6 +146,11 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
  *  A mode above 15 is sent as 15, which no firmware obeys. */
 void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,
                                 saddle_frame_t *frame);
+
+/** The COMMAND_CODE to send just before a COMMAND, with the same counter. freshness: from 1, higher
+ *  for each in a session. */
+void saddle_wire_encode_code(const saddle_cmac_key_t *key, uint32_t session, uint16_t freshness,
+                             const saddle_frame_t *command, saddle_frame_t *frame);
 
 /** The ages are not sent: the receiver counts them. */
 void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uint8_t counter,

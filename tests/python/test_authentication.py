@@ -1,0 +1,187 @@
+"""Commands that are vouched for: C and Python make the same codes, and the host takes no others."""
+
+import random
+
+import can
+import pytest
+from cffi import FFI
+
+from host_node import STANDING, Host
+from saddlewalk import paths, wire
+from saddlewalk.authentication import Voucher, code_of
+from saddlewalk.errors import UserError
+
+SEED = 20261122
+KEY = bytes.fromhex("2b7e151628aed2a6abf7158809cf4f3c")
+WALK = {"MODE": 1, "SPEED": 1.2, "HEEL_STRIKE": 0.1745}
+
+ffi = FFI()
+
+
+@pytest.fixture(scope="module")
+def codec():
+    ffi.cdef(paths.built("saddlewalk_wire_cdef.h").read_text())
+    return ffi.dlopen(str(paths.built("lib/libsaddlewalk_wire_shared.so")))
+
+
+class Guarded:
+    """The C receiver, with codes demanded, in a session."""
+
+    def __init__(self, codec, session: int = 0x01020304, key: bytes = KEY) -> None:
+        self._codec = codec
+        self.receiver = ffi.new("saddle_wire_receiver_t *")
+        codec.saddle_wire_demand_codes(self.receiver, key)
+        codec.saddle_wire_open_session(self.receiver, session)
+
+    def obeys(self, *frames: can.Message) -> bool:
+        """Whether the last of the frames is accepted."""
+        judged = [
+            self._codec.saddle_wire_accept(self.receiver, f.arbitration_id, bytes(f.data), 8)
+            for f in frames
+        ]
+        return judged[-1] == self._codec.SADDLE_WIRE_COMMAND
+
+    def session(self) -> can.Message:
+        frame = ffi.new("saddle_frame_t *")
+        self._codec.saddle_wire_encode_session(self.receiver, 0, frame)
+        data = bytes(frame.data)
+        return can.Message(arbitration_id=frame.id, is_extended_id=False, data=data)
+
+
+def speaking(guarded: Guarded) -> Voucher:
+    voucher = Voucher(KEY)
+    voucher.hear(guarded.session())
+    return voucher
+
+
+def test_c_and_python_make_the_same_codes(codec):
+    rng = random.Random(SEED)
+    command, made = ffi.new("saddle_frame_t *"), ffi.new("saddle_frame_t *")
+    prepared = ffi.new("saddle_cmac_key_t *")
+    for _ in range(300):
+        key, session = rng.randbytes(16), rng.randrange(2**32)
+        freshness = rng.randrange(1, 65536)
+        codec.saddle_cmac_prepare(prepared, key)
+        command.id, command.data = 0x100, rng.randbytes(8)
+        frame = can.Message(arbitration_id=0x100, data=bytes(command.data))
+        codec.saddle_wire_encode_code(prepared, session, freshness, command, made)
+        data = bytes(made.data)
+        code = can.Message(arbitration_id=made.id, is_extended_id=False, data=data)
+        _, told = wire.Receiver().accept(code)
+        assert told["CODE"] == code_of(key, session, freshness, frame)
+        assert (told["FRESHNESS"], told["COUNTER"]) == (freshness, command.data[1] & 15)
+
+
+def test_what_is_vouched_for_is_obeyed_and_nothing_else(codec):
+    guarded, sender = Guarded(codec), wire.Sender()
+    voucher = speaking(guarded)
+    for number in range(40):
+        assert guarded.obeys(*voucher.frames(sender, **WALK)), number
+    assert not guarded.obeys(sender.frame("COMMAND", **WALK))
+    assert (guarded.receiver.bad_code, guarded.receiver.accepted) == (1, 80)
+
+
+def test_a_replay_is_refused_in_its_session_and_in_the_next(codec):
+    guarded, sender = Guarded(codec), wire.Sender()
+    voucher = speaking(guarded)
+    recorded = [voucher.frames(sender, **WALK) for _ in range(22)]
+    for number in (2, 6, 10, 14):
+        assert guarded.obeys(*recorded[number])
+    assert not guarded.obeys(*recorded[2])  # 16 before the next, so its alive counter is in step
+    assert guarded.receiver.bad_code == 1
+    # A replay costs two commands, for its alive counter, and no more.
+    assert [guarded.obeys(*recorded[number]) for number in (18, 19, 20)] == [False, False, True]
+    codec.saddle_wire_open_session(guarded.receiver, 5)
+    assert not guarded.obeys(*recorded[21])
+    voucher.hear(guarded.session())
+    assert guarded.obeys(*voucher.frames(sender, **WALK))
+
+
+def test_every_changed_bit_is_refused(codec):
+    """Under a right CRC: of the command but for its version, and of the code."""
+    for which, bits in ((0, range(12, 64)), (1, [*range(12, 48), *range(56, 64)])):
+        for bit in bits:
+            guarded, sender = Guarded(codec), wire.Sender()
+            frames = speaking(guarded).frames(sender, **WALK)
+            frames[which].data[bit // 8] ^= 1 << bit % 8
+            frames[which].data[0] = wire.frame_crc(frames[which].arbitration_id, frames[which].data)
+            spare = which == 0 and bit < 16
+            assert guarded.obeys(*frames) == spare, (which, bit)
+
+
+def test_a_code_is_for_one_try(codec):
+    guarded, sender = Guarded(codec), wire.Sender()
+    code, command = speaking(guarded).frames(sender, **WALK)
+    other = wire.Sender().frame("COMMAND", **(WALK | {"SPEED": 0.5}))
+    assert not guarded.obeys(code, other)
+    assert not guarded.obeys(command)
+    assert guarded.receiver.bad_code == 2
+
+
+def test_another_key_is_refused(codec):
+    guarded = Guarded(codec, key=bytes(16))
+    assert not guarded.obeys(*speaking(guarded).frames(wire.Sender(), **WALK))
+
+
+@pytest.fixture
+def key_file(tmp_path):
+    path = tmp_path / "key"
+    path.write_text(KEY.hex() + "\n")
+    path.chmod(0o600)
+    return path
+
+
+def test_the_host_obeys_who_has_the_key_and_counts_who_has_not(key_file):
+    with Host("--lcm=none", "--clock=lockstep", "--command-key", str(key_file)) as host:
+        assert "; commands must be vouched for\n" in host.first_line
+        voucher = Voucher(KEY)
+        host.measure(STANDING)
+        for frame in host.tick_frames():
+            voucher.hear(frame)
+        for frame in voucher.frames(host.sender, **WALK):
+            host.bus.send(frame)
+        host.measure(STANDING)
+        assert host.tick()["INPUTS"]["COMMAND_AGE"] == 80 * 0
+        host.send("COMMAND", **WALK)
+        host.measure(STANDING)
+        assert host.tick()["INPUTS"]["COMMAND_AGE"] == 80
+        assert "1 bad code" in host.stop()
+
+
+def test_after_a_silence_there_is_a_new_session_for_whoever_comes(key_file):
+    with Host("--lcm=none", "--clock=lockstep", "--command-key", str(key_file)) as host:
+        sessions, ages = [], []
+        heard = None
+        for number in range(16):
+            if number % 8 == 1:
+                newcomer = Voucher(KEY)  # counts from 1
+                newcomer.hear(heard)
+                for frame in newcomer.frames(host.sender, **WALK):
+                    host.bus.send(frame)
+            host.measure(STANDING)
+            frames = host.tick_frames()
+            heard = next(frame for frame in frames if frame.arbitration_id == 0x13C)
+            sessions.append(bytes(heard.data[2:6]))
+            ages += [
+                wire.Receiver().accept(frame)[1]["COMMAND_AGE"]
+                for frame in frames
+                if frame.arbitration_id == 0x13F
+            ]
+        assert len(set(sessions)) == 3
+        assert ages[1] == ages[9] == 0 and ages[8] == 7 * 80
+
+
+@pytest.mark.parametrize(
+    ("text", "mode"), [(KEY.hex(), 0o644), (KEY.hex()[:-2], 0o600), ("key" * 11, 0o600)]
+)
+def test_a_key_that_is_no_secret_or_no_key_is_one_line(tmp_path, text, mode):
+    path = tmp_path / "key"
+    path.write_text(text)
+    path.chmod(mode)
+    with pytest.raises(AssertionError), Host("--lcm=none", "--command-key", str(path)) as host:
+        host.stop()
+
+
+def test_a_key_of_another_length_is_refused():
+    with pytest.raises(UserError, match="has 15 bytes: give 16"):
+        Voucher(bytes(15))
