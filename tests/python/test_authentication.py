@@ -29,6 +29,7 @@ class Guarded:
 
     def __init__(self, codec, session: int = 0x01020304, key: bytes = KEY) -> None:
         self._codec = codec
+        self._sessions_told = 0
         self.receiver = ffi.new("saddle_wire_receiver_t *")
         codec.saddle_wire_demand_codes(self.receiver, key)
         codec.saddle_wire_open_session(self.receiver, session)
@@ -43,7 +44,8 @@ class Guarded:
 
     def session(self) -> can.Message:
         frame = ffi.new("saddle_frame_t *")
-        self._codec.saddle_wire_encode_session(self.receiver, 0, frame)
+        self._sessions_told += 1
+        self._codec.saddle_wire_encode_session(self.receiver, self._sessions_told, frame)
         data = bytes(frame.data)
         return can.Message(arbitration_id=frame.id, is_extended_id=False, data=data)
 
