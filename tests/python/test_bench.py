@@ -15,7 +15,7 @@ from saddlewalk.bench import BODY, PERIOD_S, CorePlan, calls_of_plan, instants, 
 from saddlewalk.cli import main
 from saddlewalk.commands.plan import COLUMNS, row_of
 from saddlewalk.neighbours import MissingError
-from saddlewalk.neighbours.numpy_plan import GRAVITY_M_S2, plan
+from saddlewalk.neighbours.numpy_plan import GRAVITY_M_S2, margin, plan
 from saddlewalk.neighbours.octave_plan import ROWS, Octave
 from saddlewalk.neighbours.walking_qp import (
     JERK_WEIGHT_S6,
@@ -26,6 +26,7 @@ from saddlewalk.neighbours.walking_qp import (
     WalkingQp,
 )
 from saddlewalk.paths import build_dir
+from twin import bos_margin
 
 SPEEDS = (0.7, 1.0, 1.2, 1.6)
 ANGLES_DEG = (5, 10, 15)
@@ -80,6 +81,18 @@ def test_octave_plans_what_numpy_plans():
             expected = np.broadcast_to(numpy_plan[column], values.shape)
             assert values == pytest.approx(expected, abs=1e-9), column
     assert octave.seconds(1.2, 0.2, stride(1.2), at_once=True) > 0
+
+
+def test_margins_are_distances_to_every_part_of_the_border():
+    left, right = (0.1, 0.2), (-0.1, -0.2)
+    points = np.random.default_rng(5).uniform(-0.5, 0.5, (2, 300))
+    expected = [bos_margin(np.array(left), np.array(right), 0.1, point) for point in points.T]
+    assert margin(left, right, 0.1, *points) == pytest.approx(np.array(expected), abs=1e-12)
+    if shutil.which("octave-cli") is not None:
+        x, y = (" ".join(map(repr, row.tolist())) for row in points)
+        feet = [f"[{x}; {y}] * ones(1, 300)" for x, y in (left, right)]
+        text = Octave()._ask(f"printf('%.17g ', margin({feet[0]}, {feet[1]}, 0.1, [{x}], [{y}]))")
+        assert np.array(text.split(), float) == pytest.approx(np.array(expected), abs=1e-12)
 
 
 def installed_solvers() -> list[str]:
