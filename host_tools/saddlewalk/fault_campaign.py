@@ -1,0 +1,468 @@
+"""Emulated walks on which faults happen, and whether the firmware stayed safe.
+
+In lockstep a walk goes by a clock of its own, in one process: frames and their codec, CRC, counters
+and ages are those of the firmware's libraries, and nothing else decides when a frame arrives.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from typing import Any
+
+import can
+import numpy as np
+
+from saddlewalk import core, wire
+from saddlewalk.closed_loop import STEPS_A_TICK
+from saddlewalk.emulator import STANDING, STARTING, STOPPING, WALKING, Body, Wearer
+from saddlewalk.exoskeleton import plan_of
+from saddlewalk.faults import MEASURED, MESSAGES, Arrival, Fault, Happening, Line, Scenario, draw
+from saddlewalk.firmware import config_of, ffi, library
+from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages, TickReader
+
+HEEL_STRIKE_RAD = 0.17
+CLOCK_BEGIN_S = 4000.0  # so that the clock may jump back
+KNEE_HEIGHT = 0.285  # of the body's height
+REACH = 2.2  # the longest step, of half_step_max_m
+ROUNDING = 1e-3  # of the wire, at most
+STOP_WITHIN_S = 6.0  # from any speed, at the default deceleration
+
+# The worst that was said after a fault began, the worst first.
+STATES = ("safe stop", "no plan", "unknown", "unstable", "caution", "walked on")
+
+# Flaws: what the firmware must never do.
+BAD_PLAN = "plan out of bounds"
+OLD_SCORE = "score of old data"
+SILENT_STOP = "silent stop"
+NO_STOP = "no stop"
+
+_SCORES_OF_FEET = {
+    "SCORES_STEP": ("S_SW",),
+    "SCORES_MARGIN": ("MOS_COM", "MOS_XCOM"),
+    "SCORES_FORCE": ("GRAVITY_X", "GRAVITY_Y"),
+    "SCORES_ENERGY": ("EXCESS_STOP", "EXCESS_TRACK"),
+    "SCORES_EXPECTED": ("EBOS_COM", "EBOS_XCOM"),
+}
+_SCORES_OF_COM = {
+    "SCORES_MARGIN": ("MOS_XCOM",),
+    "SCORES_ENERGY": ("EXCESS_STOP", "EXCESS_TRACK"),
+    "SCORES_EXPECTED": ("EBOS_COM", "EBOS_XCOM"),
+}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one walk. Ticks count from the one after the fault began, which is 0."""
+
+    fault: Fault
+    live: bool
+    detected: int | None  # the tick in which the firmware said that something is amiss
+    state: str  # of STATES
+    flaws: tuple[str, ...]  # none: safe
+    blind: int  # ticks with a level for data that are older than the limit, as only we know
+    forged: int  # frames of others that were taken for good
+    fell: bool
+
+
+class Device:
+    """The firmware as saddlewalk-host runs it, but in this process and by the caller's clock."""
+
+    def __init__(self, config: Any) -> None:
+        """config: a saddle_config_t of saddlewalk.config."""
+        lib = library()
+        self._context = ffi().new("saddle_context_t *")
+        self._inbox = ffi().new("saddle_inbox_t *")
+        self._output = ffi().new("saddle_output_t *")
+        self._health = ffi().new("saddle_wire_health_t *")
+        self._frames = ffi().new("saddle_frame_t[]", 21)
+        self._reader = TickReader()
+        self._ticks = 0
+        lib.saddle_init(self._context, config_of(config))
+        lib.saddle_inbox_init(self._inbox, lib.SADDLE_SOURCE_NONE)
+
+    def take(self, frame: can.Message, time_us: int) -> bool:
+        """A frame that came at time_us; whether it was accepted."""
+        before = self._inbox.receiver.accepted
+        data = bytes(frame.data)
+        library().saddle_inbox_take_frame(
+            self._inbox, frame.arbitration_id, data, len(data), time_us
+        )
+        return self._inbox.receiver.accepted != before
+
+    def tick(self, time_us: int) -> Messages:
+        """One tick, as it is told on CAN."""
+        lib, output = library(), self._output
+        lib.saddle_tick(self._context, lib.saddle_inbox_read(self._inbox, time_us), output)
+        self._tell_health()
+        lib.saddle_wire_encode_output(output, self._health, self._ticks % 16, self._frames)
+        self._ticks += 1
+        if output.faults & lib.SADDLE_FAULT_COMMAND_STALE and output.plan.mode == STANDING:
+            lib.saddle_inbox_release(self._inbox)
+        messages = None
+        for frame in self._frames:
+            told = can.Message(arbitration_id=frame.id, is_extended_id=False, data=frame.data)
+            messages = self._reader.feed(told)
+        return messages
+
+    def _tell_health(self) -> None:
+        health, inbox, receiver = self._health, self._inbox, self._inbox.receiver
+        measured = inbox.input.measurement
+        health.rejected_frames = library().saddle_inbox_rejected(inbox)
+        health.input_age_us = (
+            inbox.input.command_age_us,
+            measured.com.age_us,
+            measured.foot[0].age_us,
+            measured.foot[1].age_us,
+        )
+        health.command_source = inbox.authority
+        for count in ("accepted", "malformed", "bad_crc", "bad_version", "bad_counter"):
+            setattr(health, count, getattr(receiver, count))
+
+
+@dataclass
+class Told:
+    """What is known, beside the firmware, of one message."""
+
+    came_s: float = -math.inf  # the newest that was accepted, by the firmware's clock
+    usable_s: float = -math.inf  # that could be used, too
+    born_s: float = math.inf  # when what the newest tells was so
+
+
+@dataclass
+class Judge:
+    """Follows a walk tick by tick and finds what must not be. begin_s: of the fault."""
+
+    config: Any
+    body: Any  # saddle_body_t
+    begin_s: float
+    told: dict[str, Told] = field(default_factory=lambda: {name: Told() for name in MESSAGES})
+    flaws: Counter = field(default_factory=Counter)
+    detected: int | None = None
+    blind: int = 0
+    forged: int = 0
+    states: set[str] = field(default_factory=set)
+    _before: tuple[int, ...] = ()
+    _mode: int = STANDING
+    _stopping_s: float = 0.0
+    _armed: bool = False
+    _ticks_since: int = 0
+
+    def arrived(self, arrival: Arrival, time_s: float) -> None:
+        """A frame that was accepted at time_s of the firmware's clock."""
+        name = wire.message_name(arrival.frame.arbitration_id)
+        signals = wire.signals(arrival.frame)
+        told = self.told[name]
+        if name != "COMMAND" or self._commands(signals):
+            told.came_s = time_s
+            told.born_s = arrival.born_s
+        if all(map(math.isfinite, signals.values())):
+            told.usable_s = time_s
+        self.forged += arrival.forged
+
+    @staticmethod
+    def _commands(signals: dict[str, float]) -> bool:
+        walks = signals["MODE"] == 1 and all(map(math.isfinite, signals.values()))
+        return walks or signals["MODE"] == 0
+
+    def tick(self, messages: Messages, walk_s: float, clock_s: float) -> None:
+        """A tick at walk_s of the walk and clock_s of the firmware's clock; the walk goes on."""
+        health, verdict = messages["HEALTH"], messages["VERDICT"]
+        stopping = bool(health["LIMITS"] & library().SADDLE_LIMIT_SAFE_STOP)
+        self._detect(messages, walk_s)
+        if health["STATUS"] != library().SADDLE_OK:
+            if messages["PLAN_STEP"]["VALID"] or verdict["LEVEL"]:
+                self.flaws[BAD_PLAN] += 1
+            self._stopping_s = 0.0
+            self._mode = STANDING
+            return
+        ages_s = {name: clock_s - told.came_s for name, told in self.told.items()}
+        self._check_plan(messages)
+        self._check_scores(messages, ages_s)
+        self._check_stop(messages, stopping, ages_s, clock_s)
+        self._armed = self._armed or all(ages_s[name] <= self._limit_s(name) for name in MEASURED)
+        if verdict["LEVEL"] and any(
+            walk_s - self.told[name].born_s > self._limit_s(name) for name in MEASURED
+        ):
+            self.blind += 1
+
+    def _limit_s(self, name: str) -> float:
+        limits = {
+            "COMMAND": self.config.command_max_age_s,
+            "MEASURED_COM": self.config.com_max_age_s,
+        }
+        return limits.get(name, self.config.foot_max_age_s) + 1e-6
+
+    def _detect(self, messages: Messages, walk_s: float) -> None:
+        """By what the firmware says, against what it said before the fault began."""
+        lib, health = library(), messages["HEALTH"]
+        said = lib.SADDLE_LIMIT_SAFE_STOP | lib.SADDLE_LIMIT_TICK_GAP
+        faults = int(messages["SCORES_FORCE"]["FAULTS"])
+        limits = int(health["LIMITS"]) & said
+        level = int(messages["VERDICT"]["LEVEL"])
+        now = (int(health["STATUS"]), int(health["REJECTED_FRAMES"]), faults, limits)
+        if walk_s < self.begin_s:
+            self._before = now
+            return
+        status, rejected, faults_before, limits_before = self._before or (0, 0, 0, 0)
+        amiss = (
+            now[0] != status
+            or now[1] != rejected
+            or faults & ~faults_before
+            or limits & ~limits_before
+        )
+        if self.detected is None and amiss:
+            self.detected = self._ticks_since
+        self._ticks_since += 1
+        if limits & lib.SADDLE_LIMIT_SAFE_STOP:
+            self.states.add("safe stop")
+        if health["STATUS"] != lib.SADDLE_OK:
+            self.states.add("no plan")
+        names = {0: "unknown", 2: "caution", 3: "unstable"}
+        if level in names:
+            self.states.add(names[level])
+
+    @property
+    def state(self) -> str:
+        return next((state for state in STATES if state in self.states), "walked on")
+
+    def _check_plan(self, messages: Messages) -> None:
+        told = {
+            f"{part} {name}": value
+            for part in PLAN_MESSAGES
+            for name, value in messages[part].items()
+        }
+        sound = told["PLAN_STEP VALID"] == 1 and all(map(math.isfinite, told.values()))
+        for name, (low, high) in plan_bounds(self.config, self.body).items():
+            sound = sound and low <= told[name] <= high
+        if not sound:
+            self.flaws[BAD_PLAN] += 1
+
+    def _check_scores(self, messages: Messages, ages_s: dict[str, float]) -> None:
+        old = {name for name in MEASURED if ages_s[name] > self._limit_s(name)}
+        scores = {}
+        if old & {"MEASURED_LEFT", "MEASURED_RIGHT"}:
+            scores = _SCORES_OF_FEET
+        elif old:
+            scores = _SCORES_OF_COM
+        scored = any(
+            math.isfinite(messages[part][name]) for part, names in scores.items() for name in names
+        )
+        if old and (scored or messages["VERDICT"]["LEVEL"]):
+            self.flaws[OLD_SCORE] += 1
+
+    def _check_stop(
+        self, messages: Messages, stopping: bool, ages_s: dict[str, float], clock_s: float
+    ) -> None:
+        """Lost inputs stop the walk, and nothing else does without a word."""
+        mode = int(messages["PLAN_EVENTS"]["MODE"])
+        ended = mode in (STOPPING, STANDING) and self._mode in (STARTING, WALKING)
+        if ended and not stopping:
+            self.flaws[SILENT_STOP] += 1
+        self._mode = mode
+        needed = MESSAGES if self._armed else MESSAGES[:1]
+        lost = any(ages_s[name] > self._limit_s(name) for name in needed)
+        unusable = any(
+            clock_s - self.told[name].usable_s > self._limit_s(name) + TICK_S for name in needed
+        )
+        self._stopping_s = self._stopping_s + TICK_S if stopping else 0.0
+        still_walks = self._stopping_s > STOP_WITHIN_S and mode != STANDING
+        if still_walks or ((lost or unusable) and not stopping):
+            self.flaws[NO_STOP] += 1
+
+
+def plan_bounds(config: Any, body: Any) -> dict[str, tuple[float, float]]:
+    """By message and signal, what a plan for this body can say; half a step of the wire more."""
+    height_m, fastest_m_s, half_turn = config.body_height_m, body.speed_ceiling_m_s, math.pi / 2
+    reach_m, beside_m, unbounded = REACH * body.half_step_max_m, 0.5, math.inf
+    leg_m = (KNEE_HEIGHT * height_m, height_m)
+    bounds = {
+        "PLAN_COM X": (-reach_m, reach_m),
+        "PLAN_COM Y": (-beside_m, beside_m),
+        "PLAN_COM Z": leg_m,
+        "PLAN_COM_VELOCITY VX": (-0.5, fastest_m_s),
+        "PLAN_COM_VELOCITY VY": (-1.0, 1.0),
+        "PLAN_COM_VELOCITY VZ": (-1.5, 1.5),
+        "PLAN_LANDING X": (-reach_m, reach_m),
+        "PLAN_LANDING Y": (-beside_m, beside_m),
+        "PLAN_LANDING LEG_LENGTH": leg_m,
+        "PLAN_ANKLE TOE_OFF": (-half_turn, half_turn),
+        "PLAN_ANKLE HEEL_STRIKE": (0.0, config.heel_strike_max_rad),
+        "PLAN_ANKLE SPEED": (0.0, fastest_m_s),
+        "PLAN_STEP THETA": (0.0, 2 * math.pi),
+        "PLAN_STEP STEP_LENGTH": (0.0, reach_m),
+        "PLAN_EVENTS TIME_TO_VIA_POINT": (0.0, unbounded),
+        "PLAN_EVENTS TIME_TO_HEEL_STRIKE": (0.0, unbounded),
+        "PLAN_EVENTS TIME_TO_TOE_OFF": (0.0, unbounded),
+        "PLAN_PITCH LEFT": (-half_turn, half_turn),
+        "PLAN_PITCH RIGHT": (-half_turn, half_turn),
+        "PLAN_PITCH KNEE_FLEXION": (0.0, 0.2),
+    }
+    for side in ("LEFT", "RIGHT"):
+        bounds[f"PLAN_{side} X"] = (-reach_m, reach_m)
+        bounds[f"PLAN_{side} Y"] = (-beside_m, beside_m)
+        bounds[f"PLAN_{side} Z"] = (0.0, 2 * config.swing_clearance_m + 0.3)
+    return {name: (low - ROUNDING, high + ROUNDING) for name, (low, high) in bounds.items()}
+
+
+def run(
+    scenario: Scenario, index: int, number: int, seed: int, config: Any
+) -> tuple[Outcome, list[Messages]]:
+    """Walk `number` with the scenario's fault `index`, in lockstep; all that was told, too."""
+    random = np.random.default_rng([seed, index, number])
+    fault = scenario.faults[index]
+    happening = draw(fault, random)
+    line = Line([happening], random)
+    asked = Asked(float(random.uniform(*scenario.speed_m_s)))
+    wearer = Wearer(Body.of(config), seed=int(random.integers(2**32)))
+    device, sender = Device(config), wire.Sender()
+    judge = Judge(config, core.library().saddle_body(config), happening.begin_s)
+    told = []
+    for tick in range(round(scenario.duration_s / TICK_S)):
+        walk_s = tick * TICK_S
+        for name, signals in (asked.signals, *measured_signals(wearer)):
+            line.send(sender.frame(name, **signals), walk_s)
+        if not _stalled(happening, walk_s):
+            for arrival in line.due(walk_s):
+                came_s = _clock_s(happening, arrival.time_s)
+                if device.take(arrival.frame, round(came_s * 1e6)):
+                    judge.arrived(arrival, came_s)
+            clock_s = _clock_s(happening, walk_s)
+            told.append(device.tick(round(clock_s * 1e6)))
+            judge.begin_s = max(happening.begin_s, _onset_s(happening, line))
+            judge.tick(told[-1], walk_s, clock_s)
+            wearer.follow(plan_of(told[-1]))
+        for _ in range(STEPS_A_TICK):
+            wearer.step()
+    return outcome_of(fault, False, judge, wearer), told
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A walk that goes on for ever."""
+
+    speed_m_s: float
+
+    @property
+    def signals(self) -> tuple[str, dict[str, float]]:
+        values = {"MODE": 1, "SPEED": self.speed_m_s, "HEEL_STRIKE": HEEL_STRIKE_RAD}
+        return "COMMAND", values
+
+
+def measured_signals(wearer: Wearer) -> list[tuple[str, dict[str, float]]]:
+    """What the wearer's sensors tell now, as the messages that carry it."""
+    measured = wearer.measure()
+    velocity = measured.velocity_m_s
+    com = {"HEIGHT": measured.height_m, "VX": velocity.real, "VY": velocity.imag}
+    feet = (
+        (name, {"CONTACT": contact, "X": foot.real, "Y": foot.imag})
+        for name, contact, foot in zip(MEASURED[1:], measured.contact, measured.feet_m, strict=True)
+    )
+    return [("MEASURED_COM", com), *feet]
+
+
+def _stalled(happening: Happening, walk_s: float) -> bool:
+    stalls = happening.kind == "stall"
+    return stalls and happening.begin_s <= walk_s < happening.begin_s + happening.strength
+
+
+def _clock_s(happening: Happening, walk_s: float) -> float:
+    """The firmware's clock."""
+    jumped = happening.kind == "clock" and walk_s >= happening.begin_s
+    return CLOCK_BEGIN_S + walk_s + (happening.strength if jumped else 0.0)
+
+
+def _onset_s(happening: Happening, line: Line) -> float:
+    """When the fault first did something."""
+    return line.onset_s if happening.is_of_frames and happening.kind != "none" else 0.0
+
+
+def outcome_of(fault: Fault, live: bool, judge: Judge, wearer: Wearer) -> Outcome:
+    return Outcome(
+        fault=fault,
+        live=live,
+        detected=judge.detected,
+        state=judge.state,
+        flaws=tuple(sorted(judge.flaws)),
+        blind=judge.blind,
+        forged=judge.forged,
+        fell=wearer.fallen,
+    )
+
+
+def campaign(
+    scenario: Scenario,
+    runs: int,
+    seed: int,
+    config: Any,
+    jobs: int,
+    progress: Callable[[int], None],
+) -> list[Outcome]:
+    """`runs` walks with each fault, in lockstep; the same whatever `jobs`. progress(walks done)."""
+    image = bytes(core.ffi().buffer(config))
+    with ProcessPoolExecutor(jobs) as pool:
+        futures = {
+            pool.submit(_work, scenario, index, runs, seed, image): index
+            for index in range(len(scenario.faults))
+        }
+        done: dict[int, list[Outcome]] = {}
+        try:
+            for future in as_completed(futures):
+                done[futures[future]] = future.result()
+                progress(runs * len(done))
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return [outcome for index in sorted(done) for outcome in done[index]]
+
+
+def _work(scenario: Scenario, index: int, runs: int, seed: int, image: bytes) -> list[Outcome]:
+    config = core.ffi().new("saddle_config_t *")
+    core.ffi().memmove(config, image, len(image))
+    return [run(scenario, index, number, seed, config)[0] for number in range(runs)]
+
+
+@dataclass(frozen=True)
+class Row:
+    """All walks with one fault."""
+
+    fault: Fault
+    live: bool
+    runs: int
+    detected: int
+    median_ticks: float  # to detection; NaN: none was detected
+    max_ticks: float
+    states: dict[str, int]  # of STATES, those reached
+    unsafe: int  # walks with a flaw
+    flaws: dict[str, int]
+    blind: int  # ticks, the most of a walk
+    forged: int
+    fell: int
+
+
+def rows_of(outcomes: Iterable[Outcome]) -> list[Row]:
+    """In the order of the outcomes."""
+    groups: dict[tuple[Fault, bool], list[Outcome]] = {}
+    for outcome in outcomes:
+        groups.setdefault((outcome.fault, outcome.live), []).append(outcome)
+    return [_row(fault, live, group) for (fault, live), group in groups.items()]
+
+
+def _row(fault: Fault, live: bool, outcomes: list[Outcome]) -> Row:
+    ticks = [outcome.detected for outcome in outcomes if outcome.detected is not None]
+    states = Counter(outcome.state for outcome in outcomes)
+    return Row(
+        fault=fault,
+        live=live,
+        runs=len(outcomes),
+        detected=len(ticks),
+        median_ticks=float(np.median(ticks)) if ticks else math.nan,
+        max_ticks=float(max(ticks, default=math.nan)),
+        states={state: states[state] for state in STATES if states[state]},
+        unsafe=sum(bool(outcome.flaws) for outcome in outcomes),
+        flaws=dict(Counter(flaw for outcome in outcomes for flaw in outcome.flaws)),
+        blind=max(outcome.blind for outcome in outcomes),
+        forged=sum(outcome.forged for outcome in outcomes),
+        fell=sum(outcome.fell for outcome in outcomes),
+    )
