@@ -16,6 +16,14 @@
 /** One rounding of a number below 1, some of them in a row: 8 x 2^-24. */
 #define FLOAT_TOLERANCE 5e-7
 
+/** So many repetitions of a random test, and so many findings in them; a twentieth where the
+ *  processor is emulated. */
+#ifdef SADDLE_EMULATED
+#define MANY(count) ((count) / 20)
+#else
+#define MANY(count) (count)
+#endif
+
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
 
 /** Equal bits: -0 and 0 differ, a NaN equals itself. */

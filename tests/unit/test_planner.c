@@ -355,7 +355,7 @@ static void test_stop_at_any_moment_ends_side_by_side(void)
 {
     static const uint32_t ticks[] = {80000, 13000, 160000};
     uint32_t state = 37;
-    for (int i = 0; i < 3000; i++) {
+    for (int i = 0; i < MANY(3000); i++) {
         stand(random_in(&state, 0.02f, 1.92f));
         const int until = (int)(random_bits(&state) % 200u);
         tick(0);
@@ -373,7 +373,7 @@ static void test_command_at_any_moment_is_obeyed_in_the_end(void)
 {
     uint32_t state = 41;
     int braked = 0;
-    for (int i = 0; i < 3000; i++) {
+    for (int i = 0; i < MANY(3000); i++) {
         stand(random_in(&state, 0.05f, 1.9f));
         tick(0);
         for (int k = 0; k < 100; k++) {
@@ -392,7 +392,7 @@ static void test_command_at_any_moment_is_obeyed_in_the_end(void)
         TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_WALKING, plan.mode);
         TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.8, plan.speed_m_s);
     }
-    TEST_ASSERT_GREATER_THAN_INT(300, braked);
+    TEST_ASSERT_GREATER_THAN_INT(MANY(300), braked);
 }
 
 /* Before and after the last lift-off, while shifting: 60 moments of a stop. */

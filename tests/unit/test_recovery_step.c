@@ -266,7 +266,7 @@ static void test_landing_is_the_nearest_place_of_all_that_catch(void)
     uint32_t state = 67;
     int found = 0;
     int none = 0;
-    for (int i = 0; i < 2000; i++) {
+    for (int i = 0; i < MANY(2000); i++) {
         config.recovery_follow = (float)(i % 3) * 0.5f;
         config.recovery_margin_m = random_in(&state, -0.05f, 0.05f);
         const saddle_catch_t to_catch = random_catch(&state);
@@ -287,8 +287,8 @@ static void test_landing_is_the_nearest_place_of_all_that_catch(void)
             none++;
         }
     }
-    TEST_ASSERT_GREATER_THAN_INT(300, found);
-    TEST_ASSERT_GREATER_THAN_INT(300, none);
+    TEST_ASSERT_GREATER_THAN_INT(MANY(300), found);
+    TEST_ASSERT_GREATER_THAN_INT(MANY(300), none);
 }
 
 /* ---- margin -------------------------------------------------------------------------------- */
@@ -296,7 +296,7 @@ static void test_landing_is_the_nearest_place_of_all_that_catch(void)
 static void test_margin_is_the_room_left_on_the_scarcer_axis(void)
 {
     uint32_t state = 71;
-    for (int i = 0; i < 5000; i++) {
+    for (int i = 0; i < MANY(5000); i++) {
         const saddle_catch_t to_catch = random_catch(&state);
         const places_t free = places(&to_catch);
         const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &to_catch);
@@ -316,7 +316,7 @@ static void test_margin_is_continuous(void)
 {
     uint32_t state = 73;
     int changes = 0;
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < MANY(300); i++) {
         saddle_catch_t to_catch = random_catch(&state);
         const double angle = (double)random_in(&state, 0.0f, 6.28f);
         bool was_found = false;
@@ -337,7 +337,7 @@ static void test_margin_is_continuous(void)
             was_found = recovery.found;
         }
     }
-    TEST_ASSERT_GREATER_THAN_INT(100, changes);
+    TEST_ASSERT_GREATER_THAN_INT(MANY(100), changes);
 }
 
 /* ---- settings ------------------------------------------------------------------------------ */
@@ -368,7 +368,7 @@ static void test_landing_follows_the_departure_by_its_share(void)
 static void test_share_that_is_followed_changes_neither_margin_nor_decision(void)
 {
     uint32_t state = 79;
-    for (int i = 0; i < 1000; i++) {
+    for (int i = 0; i < MANY(1000); i++) {
         const saddle_catch_t to_catch = random_catch(&state);
         config.recovery_follow = 0.0f;
         const saddle_recovery_t nearest = saddle_recovery_step(&config, &body, &to_catch);
@@ -400,7 +400,7 @@ static void test_step_stops_where_the_xcom_lies_in_the_base_of_its_posture(void)
     uint32_t state = 83;
     int stops = 0;
     int found = 0;
-    for (int i = 0; i < 5000; i++) {
+    for (int i = 0; i < MANY(5000); i++) {
         config.bos_factor = i % 2 == 0 ? 1.0f : 0.6f;
         const saddle_catch_t to_catch = random_catch(&state);
         const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &to_catch);
@@ -421,7 +421,7 @@ static void test_step_stops_where_the_xcom_lies_in_the_base_of_its_posture(void)
         found++;
         stops += recovery.stops ? 1 : 0;
     }
-    TEST_ASSERT_TRUE(stops > 100 && stops < found - 100);
+    TEST_ASSERT_TRUE(stops > MANY(100) && stops < found - MANY(100));
 }
 
 /* ---- what moving the CoP can mend ---------------------------------------------------------- */
@@ -450,7 +450,7 @@ static void test_least_deviation_is_what_the_best_cop_leaves(void)
 {
     uint32_t state = 89;
     int mended = 0;
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < MANY(300); i++) {
         const float deviation = random_in(&state, -0.3f, 0.3f);
         const float time_s = random_in(&state, 0.0f, 0.6f);
         const saddle_cop_shift_t shift = {
@@ -462,7 +462,7 @@ static void test_least_deviation_is_what_the_best_cop_leaves(void)
         TEST_ASSERT_DOUBLE_WITHIN(5e-4, expected, least); /* of up to 1.9 m; in steps of 30 us */
         mended += expected == 0.0 ? 1 : 0;
     }
-    TEST_ASSERT_TRUE(mended > 50 && mended < 200);
+    TEST_ASSERT_TRUE(mended > MANY(50) && mended < MANY(200));
 }
 
 static void test_without_a_shift_a_deviation_grows_freely(void)

@@ -141,7 +141,7 @@ static void test_margin_equals_brute_force_for_random_postures(void)
     static twin_t twin;
     uint32_t state = 11;
     double worst = 0.0;
-    for (int i = 0; i < 1500; i++) {
+    for (int i = 0; i < MANY(1500); i++) {
         const float reach = (i & 1) != 0 ? 0.7f : 0.12f;
         const saddle_vec2_t cop[2] = {random_point(&state, reach), random_point(&state, reach)};
         const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
@@ -163,7 +163,7 @@ static void test_margin_is_continuous(void)
 {
     uint32_t state = 5;
     const double step = 1e-3;
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < MANY(200); i++) {
         const saddle_vec2_t cop[2] = {random_point(&state, 0.5f), random_point(&state, 0.5f)};
         const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
         if (!bos.defined) {
@@ -281,7 +281,7 @@ static void test_factor_shrinks_the_base_around_its_centre(void)
 static void test_margin_in_the_used_share_is_similar(void)
 {
     uint32_t state = 31;
-    for (int i = 0; i < 2000; i++) {
+    for (int i = 0; i < MANY(2000); i++) {
         const float factor = random_in(&state, 0.1f, 1.0f);
         const saddle_vec2_t cop[2] = {random_point(&state, 0.5f), random_point(&state, 0.5f)};
         const saddle_bos_t whole = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
@@ -409,7 +409,7 @@ static void test_exit_of_random_points_is_where_the_ray_or_the_nearest_border_is
     uint32_t state = 29;
     int inside = 0;
     int outside = 0;
-    for (int i = 0; i < 1500; i++) {
+    for (int i = 0; i < MANY(1500); i++) {
         const float reach = (i & 1) != 0 ? 0.6f : 0.12f;
         const float factor = random_in(&state, 0.3f, 1.0f);
         const saddle_vec2_t cop[2] = {random_point(&state, reach), random_point(&state, reach)};
@@ -435,8 +435,8 @@ static void test_exit_of_random_points_is_where_the_ray_or_the_nearest_border_is
             outside++;
         }
     }
-    TEST_ASSERT_GREATER_THAN_INT(300, inside);
-    TEST_ASSERT_GREATER_THAN_INT(300, outside);
+    TEST_ASSERT_GREATER_THAN_INT(MANY(300), inside);
+    TEST_ASSERT_GREATER_THAN_INT(MANY(300), outside);
 }
 
 /* ---- energy surface ------------------------------------------------------------------------ */
@@ -463,7 +463,7 @@ static void test_surface_height_is_over_the_nearer_foot(void)
     TEST_ASSERT_TRUE(saddle_surface_height_m(cop, (saddle_vec2_t){0.0f, 0.0f}, 1.02f, &height));
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, sqrt(1.02 * 1.02 - 0.0925), height); /* the saddle */
     uint32_t state = 37;
-    for (int i = 0; i < 5000; i++) {
+    for (int i = 0; i < MANY(5000); i++) {
         const saddle_vec2_t com = random_point(&state, 0.5f);
         TEST_ASSERT_TRUE(saddle_surface_height_m(cop, com, 1.02f, &height));
         TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE,
@@ -491,7 +491,7 @@ static void test_gravity_is_the_slope_of_the_energy(void)
     uint32_t state = 23;
     const double h = 1e-6;
     const double weight = 63.3 * GRAVITY;
-    for (int i = 0; i < 5000; i++) {
+    for (int i = 0; i < MANY(5000); i++) {
         const saddle_vec2_t cop[2] = {{random_in(&state, -0.3f, 0.3f), random_in(&state, 0.05f, 0.2f)},
                                       {random_in(&state, -0.3f, 0.3f), random_in(&state, -0.2f, 0.0f)}};
         const saddle_vec2_t com = {random_in(&state, -0.3f, 0.3f), random_in(&state, -0.3f, 0.3f)};

@@ -1,67 +1,6 @@
 /** The tick's contract: a complete output on every path, time, contexts, and whatever bytes come in. */
 #include "core_test.h"
-
-/* Every field of the output, so that it can be compared without its padding. */
-typedef enum { FLOATS, OTHER } kind_t;
-
-#define FIELD(path, kind) {offsetof(saddle_output_t, path), sizeof(((saddle_output_t *)0)->path), kind}
-#define SCORES(scores)                                                                           \
-    FIELD(scores.valid, OTHER), FIELD(scores.v_comp_m_s, FLOATS), FIELD(scores.s_pend, FLOATS),  \
-        FIELD(scores.s_jump, FLOATS), FIELD(scores.s_sw, FLOATS),                                \
-        FIELD(scores.mos_com_m, FLOATS), FIELD(scores.mos_xcom_m, FLOATS),                       \
-        FIELD(scores.gravity_n, FLOATS), FIELD(scores.excess_stop_j, FLOATS),                    \
-        FIELD(scores.can_stop, OTHER), FIELD(scores.paper_stable, OTHER),                        \
-        FIELD(scores.xcom_m, FLOATS),                                                            \
-        FIELD(scores.bos.centre_m, FLOATS), FIELD(scores.bos.axis_x, FLOATS),                    \
-        FIELD(scores.bos.radius_m, FLOATS), FIELD(scores.bos.half_depth_m, FLOATS),              \
-        FIELD(scores.bos.defined, OTHER)
-
-static const struct {
-    size_t offset, size;
-    kind_t kind;
-} FIELDS[] = {
-    FIELD(status, OTHER),
-    FIELD(limits, OTHER),
-    FIELD(faults, OTHER),
-    FIELD(plan.valid, OTHER),
-    FIELD(plan.mode, OTHER),
-    FIELD(plan.phase, OTHER),
-    FIELD(plan.support, OTHER),
-    FIELD(plan.step_count, OTHER),
-    FIELD(plan.stride_count, OTHER),
-    FIELD(plan.theta_rad, FLOATS),
-    FIELD(plan.origin_x_nm, OTHER),
-    FIELD(plan.speed_m_s, FLOATS),
-    FIELD(plan.step_length_m, FLOATS),
-    FIELD(plan.step_width_m, FLOATS),
-    FIELD(plan.com_m, FLOATS),
-    FIELD(plan.com_velocity_m_s, FLOATS),
-    FIELD(plan.foot_m, FLOATS),
-    FIELD(plan.foot_pitch_rad, FLOATS),
-    FIELD(plan.swing_velocity_m_s, FLOATS),
-    FIELD(plan.leg_length_m, FLOATS),
-    FIELD(plan.knee_flexion_m, FLOATS),
-    FIELD(plan.toe_off_rad, FLOATS),
-    FIELD(plan.heel_strike_rad, FLOATS),
-    FIELD(plan.time_to_via_point_s, FLOATS),
-    FIELD(plan.time_to_heel_strike_s, FLOATS),
-    FIELD(plan.time_to_toe_off_s, FLOATS),
-    FIELD(plan.landing_m, FLOATS),
-    SCORES(scores),
-    FIELD(verdict.level, OTHER),
-    FIELD(verdict.reason, OTHER),
-    FIELD(verdict.compared, OTHER),
-    FIELD(verdict.on_track, OTHER),
-    FIELD(verdict.excess_track_j, FLOATS),
-    FIELD(verdict.ebos_com_m, FLOATS),
-    FIELD(verdict.ebos_xcom_m, FLOATS),
-    FIELD(verdict.xcom_deviation_m, FLOATS),
-    FIELD(verdict.recovery.found, OTHER),
-    FIELD(verdict.recovery.stops, OTHER),
-    FIELD(verdict.recovery.foot, OTHER),
-    FIELD(verdict.recovery.landing_m, FLOATS),
-    FIELD(verdict.recovery.margin_m, FLOATS),
-};
+#include "output_fields.h"
 
 static saddle_config_t config;
 static saddle_context_t context;
@@ -637,7 +576,7 @@ static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
     uint32_t limits = 0;
     int levels[SADDLE_LEVEL_UNSTABLE + 1] = {0};
     int reasons[SADDLE_REASON_SETTLING + 1] = {0};
-    for (int k = 0; k < 300000; k++) {
+    for (int k = 0; k < MANY(300000); k++) {
         if (k % 200 == 0) {
             config = random_config(&state);
             TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
@@ -661,17 +600,17 @@ static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
         reasons[output.verdict.reason]++;
     }
     /* The bytes are hostile, but not so hostile that nothing is computed. */
-    TEST_ASSERT_GREATER_THAN_INT(10000, walking);
-    TEST_ASSERT_GREATER_THAN_INT(5000, stopping);
-    TEST_ASSERT_GREATER_THAN_INT(5000, valid_scores);
-    TEST_ASSERT_GREATER_THAN_INT(1000, refused);
+    TEST_ASSERT_GREATER_THAN_INT(MANY(10000), walking);
+    TEST_ASSERT_GREATER_THAN_INT(MANY(5000), stopping);
+    TEST_ASSERT_GREATER_THAN_INT(MANY(5000), valid_scores);
+    TEST_ASSERT_GREATER_THAN_INT(MANY(1000), refused);
     TEST_ASSERT_EQUAL_HEX32((1u << 15) - 1u, faults); /* each was met */
     TEST_ASSERT_EQUAL_HEX32((1u << 6) - 1u, limits);
     for (size_t i = 0; i < COUNT_OF(levels); i++) {
-        TEST_ASSERT_GREATER_THAN_INT(5000, levels[i]);
+        TEST_ASSERT_GREATER_THAN_INT(MANY(5000), levels[i]);
     }
     for (size_t i = 0; i < COUNT_OF(reasons); i++) {
-        TEST_ASSERT_GREATER_THAN_INT(100, reasons[i]);
+        TEST_ASSERT_GREATER_THAN_INT(MANY(100), reasons[i]);
     }
 }
 
@@ -696,7 +635,7 @@ static void test_plan_at_is_the_next_tick_s_plan_to_the_bit(void)
     uint32_t state = 47;
     uint64_t t = 1000000;
     input.measurement.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < MANY(20000); i++) {
         if (i % 50 == 0) {
             config.ankle = (saddle_ankle_t)(random_bits(&state) % (uint32_t)SADDLE_ANKLE_COUNT);
             input.command.speed_m_s =
@@ -744,6 +683,7 @@ static void test_plan_at_beyond_its_span_is_refused(void)
     tick_at(1000000);
     const uint64_t end = 1000000u + saddle_planner_horizon_us(&context.planner);
     TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME, saddle_plan_at(&context, 999999, &plan));
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_plan_at(&context, 1000000, &plan));
     TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_plan_at(&context, end, &plan));
     TEST_ASSERT_EQUAL_UINT32(2, plan.step_count + (plan.phase % 2u == 0u ? 1u : 0u));
     TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME, saddle_plan_at(&context, end + 1u, &plan));
@@ -773,6 +713,37 @@ static void test_join_needs_a_walk(void)
     TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STANDING, output.plan.mode);
     memset(&context, 0, sizeof context);
     TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_UNINITIALISED, saddle_join(&context, &bad[0]));
+}
+
+static void test_scores_of_a_plan_need_a_context_and_a_plan(void)
+{
+    saddle_scores_t given;
+    join();
+    tick_at(0);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_score_plan(NULL, &output.plan, &given));
+    TEST_ASSERT_EQUAL_HEX32(0, given.valid);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_score_plan(&context, NULL, &given));
+    TEST_ASSERT_EQUAL_HEX32(0, given.valid);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_score_plan(&context, &output.plan, NULL));
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_score_plan(&context, &output.plan, &given));
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_VALID_ALL, given.valid);
+    const saddle_plan_t refused = {.valid = false};
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_score_plan(&context, &refused, &given));
+    TEST_ASSERT_EQUAL_HEX32(0, given.valid);
+    memset(&context, 0, sizeof context);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_UNINITIALISED,
+                          saddle_score_plan(&context, &output.plan, &given));
+}
+
+static void test_joined_walk_goes_on_without_a_usable_command(void)
+{
+    input.measurement.com.age_us = SADDLE_AGE_NEVER_US;
+    input.command.speed_m_s = 0.05f;
+    join();
+    input.command.speed_m_s = NAN;
+    tick_at(0);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_WALKING, output.plan.mode);
+    ASSERT_SAME_FLOAT(0.05f, output.plan.speed_m_s);
 }
 
 /* ---- safe stop ----------------------------------------------------------------------------- */
@@ -815,6 +786,63 @@ static uint64_t walk_for_a_while(void)
     TEST_ASSERT_EQUAL_HEX32(0, output.limits);
     TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_WALKING, output.plan.mode);
     return time_us;
+}
+
+/* ---- the plan as the wearer's reference ---------------------------------------------------- */
+
+static void assert_on_the_plan(double tolerance_y)
+{
+    TEST_ASSERT_TRUE(output.verdict.compared);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.0, output.verdict.xcom_deviation_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(tolerance_y, 0.0, output.verdict.xcom_deviation_m.y);
+    TEST_ASSERT_TRUE(output.verdict.recovery.found);
+}
+
+static void assert_lands_as_planned(void)
+{
+    const saddle_plan_t *plan = &output.plan;
+    const saddle_vec3_t *stance = &plan->foot_m[plan->support];
+    TEST_ASSERT_EQUAL_UINT8(saddle_other_side((saddle_side_t)plan->support),
+                            output.verdict.recovery.foot);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-5, (double)plan->landing_m.x - (double)stance->x,
+                              output.verdict.recovery.landing_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-5, (double)plan->landing_m.y - (double)stance->y,
+                              output.verdict.recovery.landing_m.y);
+}
+
+/* From standing to standing: the shift to the first stance leg, the walk, and the stop with the
+ * feet wherever they came to stand are all where the wearer is to be. */
+static void test_wearer_who_follows_the_plan_never_departs_from_it(void)
+{
+    uint64_t t = 0;
+    tick_at(t);
+    for (int k = 0; k < 150; k++) {
+        input.command.speed_m_s = k < 100 ? 0.9f : 0.0f;
+        follow_until(&t, t + 1u);
+        const bool steady = k > 60 && k < 100;
+        const bool stands = !(output.plan.speed_m_s > 0.0f);
+        assert_on_the_plan(steady || stands ? 1e-5 : 0.07);
+        if (steady) {
+            assert_lands_as_planned();
+        }
+        TEST_ASSERT_TRUE(output.verdict.level != (uint8_t)SADDLE_LEVEL_UNSTABLE);
+    }
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STANDING, output.plan.mode);
+    TEST_ASSERT_TRUE(output.plan.step_count > 5u);
+}
+
+/* Nothing was commanded and nobody stands: whoever walks there is no follower of the plan. */
+static void test_plan_that_only_stands_leads_nobody(void)
+{
+    input.command.mode = SADDLE_COMMAND_STAND;
+    for (uint64_t t = 0; t < 800000u; t += 80000u) {
+        input.measurement.com.velocity_m_s.x += 0.001f;
+        input.measurement.foot[SADDLE_LEFT].cop_m.x -= 0.08f;
+        input.measurement.foot[SADDLE_RIGHT].cop_m.x -= 0.08f;
+        tick_at(t);
+        TEST_ASSERT_FALSE(output.verdict.compared);
+        TEST_ASSERT_EQUAL_UINT8(SADDLE_REASON_NO_WALK, output.verdict.reason);
+    }
 }
 
 static void assert_stops_now(uint64_t time_us, uint32_t fault)
@@ -935,6 +963,10 @@ int main(void)
     RUN_TEST(test_plan_at_of_a_steady_walk_is_the_next_tick_s_in_every_field);
     RUN_TEST(test_plan_at_beyond_its_span_is_refused);
     RUN_TEST(test_join_needs_a_walk);
+    RUN_TEST(test_wearer_who_follows_the_plan_never_departs_from_it);
+    RUN_TEST(test_plan_that_only_stands_leads_nobody);
+    RUN_TEST(test_scores_of_a_plan_need_a_context_and_a_plan);
+    RUN_TEST(test_joined_walk_goes_on_without_a_usable_command);
     RUN_TEST(test_lost_input_stops_the_walk_in_the_same_tick);
     RUN_TEST(test_command_that_stays_unusable_stops_the_walk);
     RUN_TEST(test_age_of_the_last_usable_command_counts);

@@ -1,0 +1,5 @@
+set(target_tools arm-none-eabi)
+set(target_flags "-mthumb -mcpu=cortex-m33 -mfpu=fpv5-sp-d16 -mfloat-abi=hard")
+set(target_memory flash=0x10000000 flash_size=4m ram=0x38000000 ram_size=2m stack_size=64k)
+set(target_machine qemu-system-arm -M mps2-an505)
+include(${CMAKE_CURRENT_LIST_DIR}/bare-metal.cmake)

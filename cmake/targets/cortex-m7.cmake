@@ -1,0 +1,5 @@
+set(target_tools arm-none-eabi)
+set(target_flags "-mthumb -mcpu=cortex-m7 -mfpu=fpv5-sp-d16 -mfloat-abi=hard")
+set(target_memory flash=0 flash_size=4m ram=0x20000000 ram_size=4m stack_size=64k)
+set(target_machine qemu-system-arm -M mps2-an500)
+include(${CMAKE_CURRENT_LIST_DIR}/bare-metal.cmake)

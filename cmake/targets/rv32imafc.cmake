@@ -1,0 +1,5 @@
+set(target_tools riscv64-unknown-elf)
+set(target_flags "-march=rv32imafc -mabi=ilp32f")
+set(target_memory flash=0x80000000 flash_size=2m ram=0x80200000 ram_size=1m stack_size=64k)
+set(target_machine qemu-system-riscv32 -M virt -bios none)
+include(${CMAKE_CURRENT_LIST_DIR}/bare-metal.cmake)
