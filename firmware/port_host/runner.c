@@ -15,6 +15,10 @@
 /** A session ends in good time before its freshness does: this leaves some minutes. */
 #define FRESHNESS_END 60000u
 
+/** While nobody commands there is a new one every so many ticks, about 2 s: a code that was held
+ *  back is of no use for longer. */
+#define IDLE_SESSION_TICKS 25u
+
 /** The time of tick n in lockstep. */
 static uint64_t lockstep_us(const saddle_runner_t *runner)
 {
@@ -117,7 +121,8 @@ static bool is_session_over(const saddle_runner_t *runner, const saddle_output_t
 {
     const uint16_t freshness = runner->inbox.receiver.guard.freshness;
     const bool stale = (output->faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) != 0u;
-    return freshness >= FRESHNESS_END || (stale && freshness > 0u);
+    const bool renewed = runner->timing.ticks % IDLE_SESSION_TICKS == IDLE_SESSION_TICKS - 1u;
+    return freshness >= FRESHNESS_END || (stale && (freshness > 0u || renewed));
 }
 
 /** Nobody commands any more, and the walk that was commanded has come to its end. */
