@@ -63,19 +63,19 @@ def test_one_rectangle_margin_is_the_distance_to_its_border():
 
 def test_hull_margin_of_two_feet_agrees_with_a_fine_border():
     random = np.random.default_rng(7)
-    height_m, count = 1.79, 40
+    height_m, count = 1.79, 300
     feet = random.uniform(-0.6, 0.6, (count, 2, 2))
-    points = random.uniform(-0.9, 0.9, (count, 2))
+    points = random.uniform(-0.5, 0.5, (count, 2))
     half = np.array([FOOT_LENGTH, FOOT_BREADTH]) * height_m / 2
-    angles = np.linspace(0, 2 * np.pi, 100_001)
+    angles = np.linspace(0, 2 * np.pi, 20_001)
     normals = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     # A convex set's signed margin is the least of its supporting lines' distances, seen from
-    # inside; from outside, the greatest violation. Normals 63 microradians apart, 1.5 m at most.
+    # inside; from outside, the greatest violation. Normals 314 microradians apart, 1.2 m at most.
     for foot, point, margin in zip(
         feet, points, hull_margin_m(points, feet, height_m), strict=True
     ):
         support = (normals @ foot.T).max(axis=1) + np.abs(normals) @ half
-        assert margin == pytest.approx((support - normals @ point).min(), abs=1e-4)
+        assert margin == pytest.approx((support - normals @ point).min(), abs=4e-4)
 
 
 def test_hof_margin_counts_the_feet_on_the_ground_alone():
@@ -190,7 +190,7 @@ def test_trials_are_drawn_alike_for_both_kinds_and_spread_over_what_is_promised(
 
 def test_a_push_that_fells_is_foreseen_and_judged_by_its_ticks():
     config = default_config()
-    trial = replace(draw(1, 0, "planned", MASS_KG), impulse_n_s=40.0, direction_deg=90.0)
+    trial = replace(draw(1, 0, "planned", MASS_KG), impulse_n_s=60.0, direction_deg=90.0)
     ticks, fell_at_s = run(trial, config)
     walk = judge(trial, ticks, fell_at_s)
     assert walk.fell and trial.push_time_s < walk.alarm_at_s < fell_at_s
