@@ -13,7 +13,8 @@
  * as -32768, not available, and received as NaN, which saddle_tick() reports as a fault.
  *
  * No pointer is kept. Every function is re-entrant and takes constant time, mostly that of the
- * CRC: 72 shifts a frame. Stack under 300 bytes. Of the C library it wants memset() and roundf().
+ * CRC: 72 shifts a frame; where codes are demanded, a COMMAND takes one block of AES more. Stack
+ * under 300 bytes. Of the C library it wants memset() and roundf().
  *
  *     on a frame:  switch (saddle_wire_accept(&receiver, id, data, length)) {
  *                  case SADDLE_WIRE_NONE: break;
