@@ -1,4 +1,5 @@
 #include <saddlewalk/bytes.h>
+#include <saddlewalk/rounding.h>
 #include <saddlewalk/saddlewalk.h>
 
 /* Marks a context that saddle_init() has filled. */
@@ -13,6 +14,9 @@ saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *co
         return SADDLE_ERROR_NULL;
     }
     saddle_clear(context, sizeof *context);
+    if (!saddle_rounds_as_written()) {
+        return SADDLE_ERROR_BUILD;
+    }
     if (config == NULL) {
         return SADDLE_ERROR_NULL;
     }

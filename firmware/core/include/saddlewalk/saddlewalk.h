@@ -7,9 +7,17 @@
  *
  *  Nothing is kept of the pointers; nothing is shared between contexts, so each may run in a thread
  *  of its own; the same inputs give the same bits on every compiler and target that honours
- *  -ffp-contract=off. */
+ *  -ffp-contract=off. What does not is refused by saddle_init(). */
 #ifndef SADDLEWALK_SADDLEWALK_H
 #define SADDLEWALK_SADDLEWALK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #include <saddlewalk/config.h>
 #include <saddlewalk/gait_model.h>
@@ -19,7 +27,6 @@
 #include <saddlewalk/saddle_space.h>
 #include <saddlewalk/supervisor.h>
 #include <saddlewalk/version.h>
-#include <stdint.h>
 
 /** Did the call work? What the answer is worth is told by plan.valid and scores.valid. */
 typedef enum {
@@ -29,7 +36,9 @@ typedef enum {
     SADDLE_ERROR_UNINITIALISED = 3, /**< saddle_init() has not succeeded on this context */
     SADDLE_ERROR_TIME = 4,          /**< time_us went backwards: no plan, no scores, state kept,
                                          until it has caught up or saddle_init() starts over */
-    SADDLE_ERROR_COMMAND = 5        /**< saddle_join() needs a walk with a speed > 0 */
+    SADDLE_ERROR_COMMAND = 5,       /**< saddle_join() needs a walk with a speed > 0 */
+    SADDLE_ERROR_BUILD = 6          /**< the core's flags, or the processor's rounding mode, break
+                                         its bits; docs/porting.md names those to use */
 } saddle_status_t;
 
 typedef struct {
@@ -88,5 +97,9 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
  *  measured score is read against. Of a plan that is not valid nothing is scored. */
 saddle_status_t saddle_score_plan(const saddle_context_t *context, const saddle_plan_t *plan,
                                   saddle_scores_t *scores);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
