@@ -13,7 +13,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/SaddleStrict.cmake)
 function(saddle_layer name)
     cmake_parse_arguments(PARSE_ARGV 1 LAYER "" "" "HEADERS;SOURCES;USES")
     set(public ${CMAKE_CURRENT_SOURCE_DIR}/include)
-    set(view ${PROJECT_BINARY_DIR}/layers/${name})
+    set(view ${CMAKE_CURRENT_BINARY_DIR}/layers/${name})
 
     file(REMOVE_RECURSE ${view})
     file(MAKE_DIRECTORY ${view}/saddlewalk)
