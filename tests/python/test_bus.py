@@ -129,7 +129,7 @@ class TestBus:
             assert host.tick_frames(SILENCE_S) == []
             host.bus.send(com)
             assert host.tick()["HEALTH"]["REJECTED_FRAMES"] == len(strangers)
-            assert f" 0 bad counter, 0 bad version, {len(strangers)} malformed;" in host.stop()
+            assert f" 0 bad version, 0 bad code, {len(strangers)} malformed;" in host.stop()
 
     def test_the_tools_count_what_does_not_belong(self, nodes, spec):
         one, other = nodes

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
@@ -40,6 +41,7 @@ FAULT_COMMAND_STALE, LIMIT_SAFE_STOP = 1 << 14, 1 << 5
 STAND = {"MODE": 0, "SPEED": 0.0, "HEEL_STRIKE": 0.0}
 STANDING_MODE, STOPPING = 0, 3
 FLOOD_HZ = 5000
+SANITIZED = "libasan" in os.environ.get("LD_PRELOAD", "")  # whose mlockall() does nothing
 
 
 def until(node: LcmNode, channel: str, is_so, ticks: int = 60):
@@ -221,7 +223,7 @@ def flood(seconds: float) -> None:
         summary = host.stop()
         assert " 0 missed; " in summary
         came = [int(word) for word in summary.partition("frames: ")[2].split() if word.isdigit()]
-        accepted, *rejected = came[:5]
+        accepted, *rejected = came[:6]
         assert accepted > 0.5 * sent.sent and sum(rejected) > 0.3 * sent.sent
         assert accepted + sum(rejected) == pytest.approx(sent.sent, rel=0.01)
 
@@ -301,9 +303,8 @@ def test_fifo_and_locked_memory():
     with Host("--lcm=none", "--fifo=20") as host:
         assert "; SCHED_FIFO 20; memory locked\n" in host.first_line
         assert os.sched_getscheduler(host.process.pid) == os.SCHED_FIFO
-        status = (paths.Path("/proc") / str(host.process.pid) / "status").read_text()
-        locked_kb = int(status.partition("VmLck:")[2].split()[0])
-        assert locked_kb > 1000
+        status = Path(f"/proc/{host.process.pid}/status").read_text()
+        assert SANITIZED or int(status.partition("VmLck:")[2].split()[0]) > 1000  # kB
         host.stop()
 
 
@@ -325,7 +326,8 @@ def test_refused_rights_are_said_and_done_without():
     _, errors = process.communicate(timeout=WAIT_S)
     assert process.returncode == 0 and "FIFO" not in first_line
     assert "--fifo 20 refused (Operation not permitted): " in errors
-    assert "memory cannot be locked (" in errors and errors.count("\n") == 2
+    assert SANITIZED or "memory cannot be locked (" in errors
+    assert errors.count("\n") == (1 if SANITIZED else 2)
 
 
 @in_private_network
