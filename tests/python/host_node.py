@@ -35,12 +35,15 @@ STANDING = {
 class Host:
     """A running host process and a node of ours, on a bus of their own unless one is given."""
 
-    def __init__(self, *options: str, spec: str | None = None) -> None:
+    def __init__(
+        self, *options: str, spec: str | None = None, stderr: int = subprocess.PIPE
+    ) -> None:
         self.spec = spec or private_udp()
         command = [paths.built("bin/saddlewalk-host"), "--can", self.spec, *options]
-        pipe = subprocess.PIPE
         leaks = os.environ | {"ASAN_OPTIONS": "detect_leaks=1"}  # for a sanitized build
-        self.process = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, env=leaks)
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=stderr, text=True, env=leaks
+        )
         self.first_line = self.process.stdout.readline()
         assert self.process.stdout.readline() == "ready\n"
         self.bus = open_bus(self.spec)

@@ -128,7 +128,9 @@ def test_bad_frames_are_counted_and_not_used():
         assert after["PLAN_EVENTS"]["MODE"] == STANDING_MODE
         assert after["SCORES_MARGIN"] == before["SCORES_MARGIN"] | {"COUNTER": 1}
         summary = host.stop(announced=("COMMAND of wire version 99 refused: ",))
-        assert "rejected 1 bad CRC, 1 bad counter, 1 bad version, 0 bad code, 4 malformed" in summary
+        assert (
+            "rejected 1 bad CRC, 1 bad counter, 1 bad version, 0 bad code, 4 malformed" in summary
+        )
 
 
 def test_any_datagram_is_survived():
@@ -257,8 +259,22 @@ def test_lcm_says_what_can_says():
         assert {message.utime_us for message in on_lcm.values()} == {4 * 80000}
         assert (health.tick, health.measurement_age_us, health.frames_accepted) == (4, 0, 16)
         assert health.can_transport == health.TRANSPORT_UDP
+        assert_same_status(on_lcm["SADDLEWALK_STATUS"], on_can)
         assert bos.defined == 1
         assert max(bos.y_m) == pytest.approx(0.11, abs=0.01)
+
+
+def assert_same_status(status, on_can) -> None:
+    received, inputs, timing = on_can["RECEIVED"], on_can["INPUTS"], on_can["TIMING"]
+    ages_us = [status.command_age_us, status.com_age_us, status.left_age_us, status.right_age_us]
+    names = ("COMMAND_AGE", "COM_AGE", "LEFT_AGE", "RIGHT_AGE")
+    assert ages_us == [1000 * inputs[name] for name in names] == [320_000, 0, 0, 0]
+    assert status.command_source == inputs["COMMAND_SOURCE"] == status.SOURCE_CAN
+    assert status.frames_accepted == received["ACCEPTED"] == 16
+    assert status.period_us * 1e-6 == pytest.approx(timing["PERIOD"]) == pytest.approx(TICK_S)
+    assert (sum(status.latencies), status.tick, status.commands_obeyed) == (5, 4, 1)
+    assert (status.can_link, status.lcm_link) == (status.LINK_UP, status.LINK_UP)
+    assert status.frames_sent == 4 * MESSAGES_PER_TICK + MESSAGES_PER_TICK
 
 
 def assert_same_verdict(verdict, on_can) -> None:
@@ -357,6 +373,14 @@ def test_bad_lcm_commands_are_counted_and_not_used():
         (["--set", "body_mass_kg=70kg"], "--set body_mass_kg=70kg: give a number from 5 to"),
         (["--set", "step_width_slow_speed_m_s=2"], "--set step_width_slow_speed_m_s=2: "),
         (["--ankle", "wooden"], "--ankle wooden: give erf, rigid or cycloid"),
+        (["--command-from", "me"], "--command-from me: give can, lcm or first"),
+        (["--command-from", "lcm", "--lcm", "none"], "--command-from lcm: give can or first"),
+        (["--command-from", "lcm", "--clock", "lockstep"], "--command-from lcm: give can or"),
+        (["--command-from", "lcm", "--command-key", "k"], "--command-key k: give --command-from"),
+        (["--command-key", "/no/key"], "--command-key /no/key: give a file with 32 hexadecimal"),
+        (["--fifo", "100"], "--fifo 100: give a priority from 1 to 99"),
+        (["--fifo", "high"], "--fifo high: give a priority from 1 to 99"),
+        (["--can", "udp:239.0.0.1:5000@"], "--can udp:239.0.0.1:5000@: give a multicast group"),
         (["--colour"], "--colour: give an option that --help lists"),
         (["--can"], "--can: give a value"),
         (["now"], "now: give options only"),

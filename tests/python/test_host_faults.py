@@ -1,5 +1,6 @@
 """The host process when commands, buses, networks and the processor fail it."""
 
+import contextlib
 import ctypes
 import itertools
 import os
@@ -278,16 +279,32 @@ def test_an_lcm_route_that_is_lost_and_comes_back():
         host.stop(announced=("LCM is lost: ", "LCM is back"))
 
 
-def test_nobody_reads_what_it_says_and_it_goes_on():
+def full_pipe() -> tuple[int, int]:
+    reading, writing = os.pipe()
+    os.set_blocking(writing, False)
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            os.write(writing, bytes(4096))
+    os.set_blocking(writing, True)
+    return reading, writing
+
+
+@pytest.mark.parametrize("read", [True, False])
+def test_nobody_reads_what_it_says_and_it_goes_on(read):
     """Neither a full pipe nor one without a reader holds up a tick."""
-    with Host("--lcm=none") as host:
-        host.process.stderr.close()
+    reading, writing = full_pipe()
+    with Host("--lcm=none", stderr=writing) as host:
+        if not read:
+            os.close(reading)
         frame = host.sender.frame("COMMAND", **STAND)
         frame.data[6] = 3
         frame.data[0] = frame_crc(frame.arbitration_id, frame.data)
         host.bus.send(frame)
         ticks = [host.tick() for _ in range(3)]
         assert ticks[-1]["RECEIVED"]["BAD_VERSION"] == 1
+    os.close(writing)
+    if read:
+        os.close(reading)
 
 
 def may_schedule() -> bool:
