@@ -44,7 +44,6 @@ class Voucher:
             return []
         self._freshness += 1
         told = sender.frame("COMMAND", **command)
-        sender.count_from("COMMAND_CODE", told.data[1])
         code = code_of(self._key, self._session, self._freshness, told)
         return [sender.frame("COMMAND_CODE", FRESHNESS=self._freshness, CODE=code), told]
 

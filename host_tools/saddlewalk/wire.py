@@ -117,14 +117,9 @@ class Sender:
         if values.keys() != expected:
             raise ValueError(f"{name} has {sorted(values)}: give {sorted(expected)}")
         counter = self._counters.get(name, 0)
-        self.count_from(name, counter + 1)
+        self._counters[name] = (counter + 1) % COUNTERS
         data = message.encode(counter, values)
         return can.Message(arbitration_id=message.id, is_extended_id=False, data=data)
-
-    def count_from(self, name: str, counter: int) -> None:
-        """Give the next frame of a message that alive counter, modulo 16."""
-        self._counters[name] = counter % COUNTERS
-
 
 def _follows(counter: int, before: int) -> bool:
     return 1 <= (counter - before) % COUNTERS <= COUNTER_STEP_MAX

@@ -25,11 +25,16 @@
 #ifndef SADDLEWALK_WIRE_H
 #define SADDLEWALK_WIRE_H
 
-#include <saddlewalk/cmac.h>
 #include <saddlewalk/saddlewalk.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#include <saddlewalk/cmac.h>
 
 /** Every frame is a classic CAN data frame of this many bytes with an 11-bit identifier. */
 #define SADDLE_WIRE_LENGTH 8u
@@ -148,7 +153,7 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
 void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,
                                 saddle_frame_t *frame);
 
-/** The COMMAND_CODE to send just before a COMMAND, with the same counter. freshness: from 1, higher
+/** The COMMAND_CODE to send just before a COMMAND, with its alive counter. freshness: from 1, higher
  *  for each in a session. */
 void saddle_wire_encode_code(const saddle_cmac_key_t *key, uint32_t session, uint16_t freshness,
                              const saddle_frame_t *command, saddle_frame_t *frame);
@@ -156,5 +161,9 @@ void saddle_wire_encode_code(const saddle_cmac_key_t *key, uint32_t session, uin
 /** The ages are not sent: the receiver counts them. */
 void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uint8_t counter,
                                     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES]);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
