@@ -1,0 +1,266 @@
+"""The page of a session: what was walked, the alarms, the steps, and what the data are worth."""
+
+import datetime
+import os
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from saddlewalk import __version__, html_page
+from saddlewalk.config import ANKLES
+from saddlewalk.html_page import table
+from saddlewalk.session import quality
+from saddlewalk.session.pictures import draw
+from saddlewalk.session.runs import Run, Session, Span
+from saddlewalk.session.steps import QUANTITIES, SIDES, Step, Way, variability, walked
+from saddlewalk.verdict import LEVELS
+
+TITLE = "Session report"
+NO_DEVICE = (
+    "**Saddlewalk is no medical device.** It has not been certified or tried on patients, and this "
+    "page is no diagnosis: it tells what one log holds."
+)
+NO_VERDICT = "no verdict"
+SILENT = "silent"
+NO_STEPS = "No step is seen in this run."
+UNKNOWN = "not known"
+
+_STEPS = """
+A *left* step ends where the left foot lands. *Length*: how far it is then ahead of the other foot;
+*width*: how far the left foot is left of the right one; *time*: since the other foot landed. SD is
+the sample's, CV is SD by mean.
+"""
+_MEASURED = """
+From the measured feet of SADDLEWALK_INPUT, seen once a tick: each step time is within 80 ms, so an
+SD of step time below about 33 ms is not told from that of the tick.
+"""
+_PLANNED = """
+**From the plan**, not from the person: the log holds no measurement of the feet. A person who does
+not follow the plan walks otherwise.
+"""
+_STEADY = "*Steady*: the plan was walking at one speed from one landing to the next."
+
+
+def write_page(log: Path, session: Session) -> str:
+    """The whole page as HTML."""
+    several = len(session.runs) > 1
+    sections = [f"# {TITLE}\n\n{NO_DEVICE}", _about(log, session)]
+    embedded: dict[str, bytes] = {}
+    for number, run in enumerate(session.runs, start=1):
+        sections += [f"# Run {number} of {len(session.runs)}"] if several else []
+        way, found = walked(run), quality.troubles(run)
+        pictures = draw(run, way, found)
+        names = {kind: f"run-{number}-{kind}.png" for kind in pictures}
+        embedded |= {names[kind]: each.png for kind, each in pictures.items()}
+        shown = {
+            kind: html_page.picture(names[kind], each.caption) for kind, each in pictures.items()
+        }
+        sections += [
+            f"## In short\n\n{_in_short(run, way)}",
+            f"## Levels and alarms\n\n{shown['level']}\n\n{_levels(run)}\n\n{_alarms(run)}",
+            f"## Scores\n\n{shown['scores']}",
+            f"## Steps\n\n{_steps(way)}\n\n{shown.get('steps', '')}",
+            f"## Data quality\n\n{_quality(run, found)}\n\n{shown.get('troubles', '')}",
+            f"## Configuration\n\n{_configuration(run)}",
+        ]
+    return html_page.page(f"{TITLE}: {_name(log)}", "\n\n".join(sections), embedded)
+
+
+def in_words(session: Session) -> Iterator[str]:
+    """A line a run."""
+    for run in session.runs:
+        way = walked(run)
+        levels = ", ".join(f"{name} {held_s:.1f} s" for name, held_s in time_in_levels(run).items())
+        told = f"{len(way.steps)} steps, {way.distance_m:.1f} m" if way else "steps not known"
+        yield f"{len(run.ticks)} ticks, {run.duration_s:.1f} s, {told}; {levels}"
+
+
+def time_in_levels(run: Run) -> dict[str, float]:
+    """Seconds in each level, and without one if there are any."""
+    times_s = {
+        name: float(run.hold_s[run.levels == LEVELS.index(name)].sum())
+        for name in (*LEVELS[1:], LEVELS[0])
+    }
+    strange = ~np.isin(run.levels, range(len(LEVELS)))
+    rest = {NO_VERDICT: float(run.hold_s[strange].sum()), SILENT: float(run.silent_s.sum())}
+    return times_s | {name: held_s for name, held_s in rest.items() if held_s > 0}
+
+
+def alarms(run: Run) -> list[Span]:
+    """Each time that the level was not stable: caution, unstable, unknown."""
+    troubled = {LEVELS.index(name) for name in LEVELS if name != "stable"}
+    return [span for span in run.spans(run.levels) if span.value in troubled]
+
+
+def _name(log: Path) -> str:
+    return os.fsencode(log.name).decode(errors="replace")
+
+
+def _plain(text: str) -> str:
+    """Of a log: text that is shown as it is, whatever it would mean in Markdown or HTML."""
+    return "".join(c if c.isalnum() or c in " .,:-" else f"&#{ord(c)};" for c in text)
+
+
+def _about(log: Path, session: Session) -> str:
+    first, last = map(_date, session.logged_us)
+    lines = [
+        f"{_plain(_name(log))}: {session.events} messages, logged from {first} to {last}. "
+        f"Times below are seconds since the first tick of a run."
+    ]
+    if session.broken:
+        lines.append(f"**The log is incomplete:** {_plain(session.broken)}.")
+    if session.truth:
+        fate = "fell" if any(message.fallen for message in session.truth) else "did not fall"
+        lines.append(f"The wearer was emulated (SADDLEWALK_TRUTH) and {fate}.")
+    if session.unreadable:
+        told = ", ".join(f"{count} on {_plain(name)}" for name, count in session.unreadable.items())
+        lines.append(f"Not read, being of no type that saddlewalk {__version__} has: {told}.")
+    return "\n\n".join(lines)
+
+
+def _date(logged_us: int) -> str:
+    try:
+        date = datetime.datetime.fromtimestamp(logged_us / 1e6, datetime.UTC)
+    except (OverflowError, ValueError, OSError):
+        return f"{logged_us} µs"
+    return f"{date:%Y-%m-%d %H:%M:%S} UTC"
+
+
+def _in_short(run: Run, way: Way | None) -> str:
+    rows = [["duration", f"{run.duration_s:.2f} s"]]
+    if way:
+        source = "measured" if way.measured else "planned"
+        unknown = f"; not known during {way.unknown_s:.2f} s" if way.unknown_s else ""
+        rows += [
+            ["steps", f"{len(way.steps)}, {source}"],
+            ["distance of the CoM", f"{way.distance_m:.2f} m, {source}{unknown}"],
+            ["mean speed, over the steps", f"{_known(way.speed_m_s, 3)} m/s"],
+        ]
+    else:
+        rows.append(["steps, distance, speed", UNKNOWN])
+    counts = {name: sum(s.value == LEVELS.index(name) for s in alarms(run)) for name in LEVELS}
+    told = [f"{name} {counts[name]}" for name in ("unstable", "caution", "unknown")]
+    rows.append(["times that the level was", ", ".join(told) if run.has("verdict") else UNKNOWN])
+    return table(("what", "how much"), rows)
+
+
+def _levels(run: Run) -> str:
+    if not run.has("verdict"):
+        return "No verdict was logged."
+    rows = [
+        [name, f"{held_s:.2f}", f"{held_s / run.duration_s:.1%}"]
+        for name, held_s in time_in_levels(run).items()
+    ]
+    return table(("level", "time (s)", "share"), rows)
+
+
+def _alarms(run: Run) -> str:
+    if not run.has("verdict"):
+        return ""
+    found = alarms(run)
+    if not found:
+        return "No alarm."
+    rows = [
+        [
+            f"{each.start_s:.2f}",
+            f"{each.duration_s:.2f}",
+            f"**{LEVELS[each.value]}**" if LEVELS[each.value] == "unstable" else LEVELS[each.value],
+            "; ".join(map(_plain, run.reasons(each.ticks))),
+        ]
+        for each in found
+    ]
+    return table(("start (s)", "duration (s)", "level", "reason"), rows)
+
+
+def _steps(way: Way | None) -> str:
+    if way is None:
+        return "Neither measured feet nor a plan was logged."
+    words = [_MEASURED if way.measured else _PLANNED]
+    if not way.steps:
+        return "\n\n".join([*words, NO_STEPS])
+    steady = [step for step in way.steps if step.steady]
+    groups = {"all": way.steps} | ({"steady": steady} if steady else {})
+    rows = [row for name, steps in groups.items() for row in _variabilities(name, steps)]
+    header = ("steps", "foot", "what", "number", "mean", "SD", "CV")
+    return "\n\n".join([_STEPS, *words, *([_STEADY] if steady else []), table(header, rows)])
+
+
+def _variabilities(group: str, steps: Sequence[Step]) -> Iterator[list[str]]:
+    sides = {"both": steps} | {
+        name: [step for step in steps if step.side == side] for side, name in enumerate(SIDES)
+    }
+    for member, label in QUANTITIES.items():
+        for side, landed in sides.items():
+            told = variability([getattr(step, member) for step in landed])
+            numbers = (_known(told.mean, 3), _known(told.sd, 4), _known(100 * told.cv, 1, " %"))
+            yield [group, side, label, str(told.steps), *numbers]
+
+
+def _quality(run: Run, troubles: Sequence[quality.Trouble]) -> str:
+    numbers = [tick.number for tick in run.ticks if tick.number is not None]
+    told = f"numbers {numbers[0]} to {numbers[-1]}" if numbers else "without numbers"
+    found = quality.gaps(run)
+    rows = [["ticks in the log", f"{len(run.ticks)}, {told}"]]
+    rows += [
+        [what, words]
+        for what, words in (
+            ("timing, since the firmware's start", quality.late(run)),
+            ("CAN, since the firmware's start", quality.rejected(run)),
+        )
+        if words
+    ]
+    rows.append(["gaps", f"{len(found)}, {sum(gap.duration_s for gap in found):.2f} s in all"])
+    parts = [*quality.missing(run), table(("what", "how much"), rows)]
+    if found:
+        cells = [[f"{gap.start_s:.2f}", f"{gap.duration_s:.2f}", gap.words] for gap in found]
+        parts.append(table(("gap from (s)", "duration (s)", "which"), cells))
+    return "\n\n".join([*parts, _troubles(run, troubles), _ages(run)])
+
+
+def _troubles(run: Run, found: Sequence[quality.Trouble]) -> str:
+    if not found:
+        return "No fault and no limit was told." if run.has("health") else ""
+    rows = [
+        [
+            each.name,
+            each.words,
+            str(len(each.spans)),
+            f"{sum(span.duration_s for span in each.spans):.2f}",
+            f"{each.spans[0].start_s:.2f}",
+            f"{each.spans[-1].start_s:.2f}",
+        ]
+        for each in found
+    ]
+    header = ("fault or limit", "meaning", "times", "in all (s)", "first at (s)", "last at (s)")
+    return table(header, rows)
+
+
+def _ages(run: Run) -> str:
+    rows = [
+        [each.what, *map(_known, (each.median_ms, each.usual_ms, each.oldest_ms)), str(each.never)]
+        for each in quality.ages(run)
+    ]
+    header = ("age of", "median (ms)", "95 % below (ms)", "oldest (ms)", "ticks before it came")
+    return table(header, rows) if rows else ""
+
+
+def _configuration(run: Run) -> str:
+    config, status = run.last("config"), run.last("status")
+    if config is None:
+        of_status = f"Saddlewalk {_plain(status.library_version)}. " if status else ""
+        return f"{of_status}No configuration was logged."
+    clock = "lockstep" if config.lockstep else "real time"
+    ankle = {number: name for name, number in ANKLES.items()}.get(config.ankle, str(config.ankle))
+    rows = [
+        ["library", _plain(config.library_version)],
+        ["wire", str(config.wire_version)],
+        ["clock", clock],
+        ["ankle", ankle],
+        *([_plain(n), f"{v:.7g}"] for n, v in zip(config.name, config.value, strict=True)),
+    ]
+    return table(("what", "value"), rows)
+
+
+def _known(number: float, decimals: int = 0, unit: str = "") -> str:
+    return f"{number:.{decimals}f}{unit}" if np.isfinite(number) else UNKNOWN

@@ -1,0 +1,172 @@
+"""What a run's data are worth: lost ticks, faults, ages, refused frames, missing channels."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from saddlewalk import process_words
+from saddlewalk.dashboard import FAULTS, LIMITS, STATUSES
+from saddlewalk.session.runs import Run, Span
+from saddlewalk.ticks import TICK_S
+
+GAP_S = 1.5 * TICK_S
+AGES = {
+    "command": "command",
+    "com": "CoM",
+    "left": "left foot",
+    "right": "right foot",
+}
+LACKS = {
+    "verdict": "levels, alarms, energies and the recovery step are not known",
+    "scores": "S_pend, S_jump, S_SW and the margins are not known",
+    "plan": "the planned speed is not known, nor which steps were steady",
+    "input": "what was measured, and how old it was, is not known",
+    "health": "faults, limits and late ticks are not known",
+    "status": "how the firmware kept its time, and what it refused, is known less closely",
+    "config": "configuration and versions are not known",
+}
+FAULT_WORDS = {
+    "COMMAND": "a command that cannot be used",
+    "COM_STALE": "the CoM's measurement is too old",
+    "COM_RANGE": "the CoM's measurement is not finite or absurd",
+    "LEFT_STALE": "the left foot's measurement is too old",
+    "LEFT_RANGE": "the left foot's measurement is not finite or absurd",
+    "RIGHT_STALE": "the right foot's measurement is too old",
+    "RIGHT_RANGE": "the right foot's measurement is not finite or absurd",
+    "FEET_TOGETHER": "the feet are at one place",
+    "SPEED_INFEASIBLE": "this body cannot walk at the measured speed",
+    "COM_FROZEN": "the CoM's measurement stays the same while the feet move",
+    "LEFT_FROZEN": "the left foot's measurement stays the same while the CoM moves",
+    "RIGHT_FROZEN": "the right foot's measurement stays the same while the CoM moves",
+    "AIRBORNE": "both feet are in the air for too long",
+    "FEET_CROSSED": "the feet are crossed",
+    "COMMAND_STALE": "no command that can be used came for too long",
+}
+LIMIT_WORDS = {
+    "SPEED": "the commanded speed is not feasible: the nearest that is was planned",
+    "HEEL_STRIKE": "the commanded heel-strike angle is out of range",
+    "TOE_OFF": "the ankle's angle is outside the geometry",
+    "FEET": "no plan can start or go on from the measured feet",
+    "TICK_GAP": "a late tick: the plan advanced less than time did",
+    "SAFE_STOP": "inputs were lost: the plan ended the walk",
+}
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """A fault, a limit or an error, and when."""
+
+    name: str
+    words: str
+    spans: list[Span]
+
+
+@dataclass(frozen=True)
+class Age:
+    """Of an input at the ticks, milliseconds; NaN if it never came."""
+
+    what: str
+    median_ms: float
+    usual_ms: float  # 95 % are younger
+    oldest_ms: float
+    never: int  # ticks before the first one
+
+
+@dataclass(frozen=True)
+class Gap:
+    start_s: float
+    duration_s: float
+    words: str
+
+
+def missing(run: Run) -> list[str]:
+    """In words, each channel of the firmware that the log does not hold, and what it would tell."""
+    return [
+        f"Nothing that can be read came on SADDLEWALK_{name.upper()}: {lack}."
+        for name, lack in LACKS.items()
+        if not run.has(name)
+    ]
+
+
+def troubles(run: Run) -> list[Trouble]:
+    """Faults, limits and errors that were told, by kind."""
+    found = [
+        *_bits(run, "faults", FAULTS, FAULT_WORDS),
+        *_bits(run, "limits", LIMITS, LIMIT_WORDS),
+    ]
+    statuses = run.bits("health", "status")
+    for status in np.unique(statuses[statuses != 0]).tolist():
+        name = STATUSES[status] if 0 < status < len(STATUSES) else f"status {status}"
+        found.append(_trouble(run, name, "the tick failed", statuses == status))
+    return found
+
+
+def gaps(run: Run) -> list[Gap]:
+    """Where ticks are missing, and whether the log or the firmware left them out."""
+    found = []
+    for index in np.flatnonzero(np.diff(run.time_s) > GAP_S):
+        before, after = run.ticks[index].number, run.ticks[index + 1].number
+        words = "no message tells why"
+        if before is not None and after is not None:
+            lost = after - before - 1
+            words = f"{lost} ticks are not in the log" if lost else "the firmware left ticks out"
+        start_s = float(run.time_s[index]) + TICK_S
+        found.append(Gap(start_s, float(run.time_s[index + 1]) - start_s, words))
+    return found
+
+
+def ages(run: Run) -> list[Age]:
+    """Of each input of the ticks that were logged with their inputs."""
+    return [_age(run, part, what) for part, what in AGES.items() if run.has("input")]
+
+
+def rejected(run: Run) -> str:
+    """Frames accepted and refused since the firmware's start, and why; empty if nothing tells."""
+    status, health = run.last("status"), run.last("health")
+    told = status or health
+    if told is None:
+        return ""
+    counts = [
+        f"{getattr(told, member)} {words}"
+        for words, member in process_words.REFUSED.items()
+        if getattr(told, member, 0)
+    ]
+    return f"{told.frames_accepted} frames accepted, refused: {', '.join(counts) or 'none'}"
+
+
+def late(run: Run) -> str:
+    """How the firmware kept its time, since its start; empty if nothing tells."""
+    status, health = run.last("status"), run.last("health")
+    if status:
+        return (
+            f"{status.late_ticks} ticks late, {status.missed_ticks} left out; at most "
+            f"{status.latency_max_us / 1000:.2f} ms latency and {status.work_max_us / 1000:.2f} ms "
+            "work"
+        )
+    return f"{health.late_ticks} ticks late" if health else ""
+
+
+def _bits(run: Run, member: str, names: Sequence[str], words: dict[str, str]) -> list[Trouble]:
+    bits = run.bits("health", member)
+    found = []
+    for bit in range(32):
+        there = (bits >> bit & 1) > 0
+        if there.any():
+            name = names[bit] if bit < len(names) else f"bit {bit}"
+            found.append(_trouble(run, name, words.get(name, "not known here"), there))
+    return found
+
+
+def _trouble(run: Run, name: str, words: str, there: np.ndarray) -> Trouble:
+    return Trouble(name, words, [span for span in run.spans(there) if span.value])
+
+
+def _age(run: Run, part: str, what: str) -> Age:
+    age_us = run.column("input", f"{part}_age_us")
+    told = age_us[age_us >= 0]
+    never = int((age_us < 0).sum())
+    if not len(told):
+        return Age(what, np.nan, np.nan, np.nan, never)
+    median, usual, oldest = np.percentile(told, (50, 95, 100)) / 1000
+    return Age(what, float(median), float(usual), float(oldest), never)
