@@ -1,0 +1,256 @@
+"""Others' builds take the library up, each by its own manifest, and refuse to break its bits."""
+
+import json
+import os
+import platform
+import re
+import runpy
+import shutil
+import subprocess
+from functools import cache
+from pathlib import Path
+
+import can
+import kconfiglib
+import pytest
+import yaml
+
+from saddlewalk import paths
+from saddlewalk.wire import Receiver
+
+CHECKOUT = paths.CHECKOUT
+CONSUMERS = CHECKOUT / "tests/consumers"
+PROGRAM = CHECKOUT / "examples/minimal.c"
+CORE = CHECKOUT / "firmware/core"
+PACKAGE = runpy.run_path(str(CHECKOUT / "tools/package.py"))
+VERSION = PACKAGE["version"]()
+ERROR_BUILD = 6
+
+# The sanitizer's runtime, if it was loaded for the tests, is not for compilers.
+ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
+
+
+@cache
+def cached(name: str) -> str:
+    """What the build under test was configured with."""
+    text = (paths.build_dir() / "CMakeCache.txt").read_text()
+    return re.search(rf"^{name}:\w+=(.*)$", text, re.MULTILINE)[1]
+
+
+def run(*command: str | Path, check: bool = True) -> subprocess.CompletedProcess:
+    result = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True)
+    if check and result.returncode != 0:
+        pytest.fail(f"{command}\n{result.stdout}{result.stderr}")
+    return result
+
+
+def compile_c(target: Path, *arguments: str | Path, check: bool = True):
+    return run(cached("CMAKE_C_COMPILER"), *arguments, "-o", target, "-lm", check=check)
+
+
+def configure(consumer: str, folder: Path, check: bool = True, **variables: str | Path):
+    same = ("CMAKE_C_COMPILER", "CMAKE_C_FLAGS", "CMAKE_MAKE_PROGRAM", "Python3_EXECUTABLE")
+    variables |= {name: cached(name) for name in same} | {"PROGRAM": PROGRAM}
+    options = [f"-D{name}={value}" for name, value in variables.items()]
+    source = CONSUMERS / consumer
+    cmake = cached("CMAKE_COMMAND")
+    return run(cmake, "-S", source, "-B", folder, "-G", "Ninja", *options, check=check)
+
+
+def walk_of(consumer: str, folder: Path, **variables: str | Path) -> str:
+    """What the README's program prints, built by that consumer."""
+    configure(consumer, folder, **variables)
+    run(cached("CMAKE_COMMAND"), "--build", folder, "-j2")
+    return run(folder / "walk").stdout
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory) -> str:
+    """What the README's program prints, built as the README says."""
+    program = tmp_path_factory.mktemp("plain") / "walk"
+    flags = ["-Ifirmware/core/include", "-ffp-contract=off"]
+    assert f"with `{' '.join(flags)}`" in (CHECKOUT / "README.md").read_text()
+    compile_c(program, f"-I{CORE / 'include'}", flags[1], PROGRAM, *(CORE / "src").glob("*.c"))
+    printed = run(program).stdout
+    assert printed.count("\n") == 50
+    return printed
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory) -> Path:
+    prefix = tmp_path_factory.mktemp("installed")
+    run(cached("CMAKE_COMMAND"), "--install", paths.build_dir(), "--prefix", prefix)
+    return prefix
+
+
+def test_find_package_gives_the_core_and_the_wire(installed, walk, tmp_path):
+    found = {"CMAKE_PREFIX_PATH": installed, "WANTED": VERSION}
+    assert walk_of("find_package", tmp_path, **found) == walk
+    receiver = Receiver()
+    lines = run(tmp_path / "frames").stdout.splitlines()
+    for line in lines:
+        identifier, data = line.split("#")
+        message = can.Message(
+            arbitration_id=int(identifier, 16), data=bytes.fromhex(data), is_extended_id=False
+        )
+        assert receiver.accept(message), line
+    assert len(lines) > 15
+
+
+def test_find_package_refuses_another_version(installed, tmp_path):
+    found = {"CMAKE_PREFIX_PATH": installed, "WANTED": "99.0"}
+    result = configure("find_package", tmp_path, check=False, **found)
+    assert result.returncode != 0
+    assert f"version: {VERSION}" in result.stderr
+
+
+def test_what_is_installed_names_nothing_of_the_checkout(installed):
+    for file in installed.rglob("*.cmake"):
+        assert str(CHECKOUT) not in file.read_text(), file
+
+
+@pytest.mark.parametrize("folder", [".", "firmware/core"])
+def test_add_subdirectory(folder, walk, tmp_path):
+    taken = {"FOLDER": CHECKOUT / folder}
+    assert walk_of("add_subdirectory", tmp_path, **taken) == walk
+
+
+@pytest.fixture(scope="module")
+def cpp() -> list[str]:
+    """A compiler of C++, which needs no library of C++."""
+    for compiler in (cached("CMAKE_C_COMPILER"), "gcc", "clang"):
+        command = [compiler, "-x", "c++", "-std=c++11", "-fno-exceptions", "-Wall", "-Werror"]
+        if shutil.which(compiler) and not run(*command, "-E", os.devnull, check=False).returncode:
+            return command
+    pytest.skip("no compiler of C++: apt-get install clang")
+
+
+def test_headers_from_cpp(cpp, tmp_path):
+    include = [f"-I{CORE / 'include'}", f"-I{CHECKOUT / 'firmware/wire/include'}"]
+    source, compiled = tmp_path / "use.cpp", tmp_path / "use.o"
+    source.write_text("#include <saddlewalk/wire.h>\nint main() { saddle_tick(0, 0, 0); }\n")
+    run(*cpp, *include, "-c", source, "-o", compiled)
+    compile_c(
+        tmp_path / "use",
+        compiled,
+        paths.built("lib/libsaddlewalk_core.a"),
+        *cached("CMAKE_C_FLAGS").split(),
+    )
+
+
+def test_arduino_library_builds_as_arduino_does_it(cpp, tmp_path):
+    """src is on the include path, all below it is compiled, and a sketch is C++."""
+    library = tmp_path / "Saddlewalk"
+    run(CHECKOUT / "tools/package.py", "arduino", library)
+    include = [f"-I{library / 'src'}", f"-I{CONSUMERS / 'arduino'}"]
+    sketch, compiled = library / "examples/Stand/Stand.ino", tmp_path / "sketch.o"
+    run(*cpp, *include, "-include", "Arduino.h", "-c", sketch, "-o", compiled)
+    sources = (library / "src").rglob("*.c")
+    compile_c(tmp_path / "sketch", *include, "-ffp-contract=off", compiled, *sources)
+    printed = run(tmp_path / "sketch").stdout.splitlines()
+    assert len(printed) == 10
+    assert printed[-1] == "1.014 m, level 1"
+
+
+def test_arduino_properties_are_complete(tmp_path):
+    run(CHECKOUT / "tools/package.py", "arduino", tmp_path / "Saddlewalk")
+    lines = (tmp_path / "Saddlewalk/library.properties").read_text().splitlines()
+    fields = dict(line.split("=", 1) for line in lines)
+    wanted = "name version author maintainer sentence paragraph category architectures includes"
+    assert all(fields[name] for name in wanted.split())
+    assert re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9 _.-]*", fields["name"])
+    assert fields["version"] == VERSION
+    assert fields["category"] in ("Device Control", "Data Processing", "Sensors", "Other")
+    assert (tmp_path / "Saddlewalk/src" / fields["includes"]).is_file()
+    refused = run(CHECKOUT / "tools/package.py", "arduino", tmp_path, check=False)
+    assert refused.returncode == 1
+    assert refused.stderr == f"{tmp_path} exists already: name a new folder\n"
+
+
+def test_platformio_manifest_is_in_step_and_builds(walk, tmp_path):
+    committed = (CHECKOUT / "library.json").read_text()
+    manifest = json.loads(committed)
+    old = tmp_path / "library.json"
+    old.write_text(committed.replace(f'"version": "{VERSION}"', '"version": "0.0.0"'))
+    assert json.loads(old.read_text())["version"] == "0.0.0"
+    PACKAGE["platformio"](old)
+    assert old.read_text() == committed
+
+    assert re.fullmatch(r"[a-z0-9-]{1,50}", manifest["name"])
+    assert len(manifest["description"]) <= 255
+    assert (CHECKOUT / manifest["build"]["includeDir"] / manifest["headers"]).is_file()
+    assert all((CHECKOUT / path).exists() for path in manifest["export"]["include"])
+    build = manifest["build"]
+    include = f"-I{CHECKOUT / build['includeDir']}"
+    sources = sorted((CHECKOUT / build["srcDir"]).glob("*.c"))
+    compile_c(tmp_path / "walk", *build["flags"], include, PROGRAM, *sources)
+    assert run(tmp_path / "walk").stdout == walk
+
+
+def test_zephyr_module_builds_under_stand_ins_for_its_functions(walk, tmp_path):
+    module = yaml.safe_load((CHECKOUT / "zephyr/module.yml").read_text())
+    assert module["name"] == "saddlewalk"
+    assert walk_of("zephyr", tmp_path, MODULE=CHECKOUT / module["build"]["cmake"]) == walk
+
+
+@pytest.mark.parametrize("has_fpu", ["y", "n"])
+def test_zephyr_option_is_off_until_asked_for_and_then_wants_the_fpu(has_fpu, tmp_path):
+    module = yaml.safe_load((CHECKOUT / "zephyr/module.yml").read_text())
+    tree = tmp_path / "Kconfig"
+    options = f"config CPU_HAS_FPU\n\tdef_bool {has_fpu}\n\nconfig FPU\n\tbool\n\n"
+    tree.write_text(f'{options}source "{CHECKOUT / module["build"]["kconfig"]}"\n')
+    config = kconfiglib.Kconfig(str(tree))
+    assert not config.warnings
+    assert config.syms["SADDLEWALK"].str_value == "n"
+    config.syms["SADDLEWALK"].set_value("y")
+    assert config.syms["FPU"].str_value == has_fpu
+
+
+CHECK = """
+#include <saddlewalk/rounding.h>
+int main(void) { return saddle_rounds_as_written() ? 0 : 6; }
+"""
+INIT = """
+#include <saddlewalk/saddlewalk.h>
+int main(void)
+{
+    static saddle_context_t walker;
+    const saddle_config_t config = saddle_config_default(1.79f, 63.3f);
+    return (int)saddle_init(&walker, &config);
+}
+"""
+
+
+def outcome(tmp_path: Path, program: str, sources: list[Path], *flags: str) -> int | str:
+    """The program's exit status, or what the compiler said."""
+    (tmp_path / "main.c").write_text(program)
+    arguments = [f"-I{CORE / 'include'}", "-O2", *flags, tmp_path / "main.c", *sources]
+    compiled = compile_c(tmp_path / "main", *arguments, check=False)
+    return compiled.stderr or run(tmp_path / "main", check=False).returncode
+
+
+@pytest.mark.parametrize(
+    "flags",
+    [
+        "-ffast-math",
+        "-funsafe-math-optimizations",
+        "-fassociative-math -fno-signed-zeros -fno-trapping-math",
+        "-freciprocal-math",
+        "-ffinite-math-only",
+        pytest.param(
+            "-m32 -mno-sse",
+            marks=pytest.mark.skipif(platform.machine() != "x86_64", reason="the x87 is an x86's"),
+        ),
+    ],
+)
+def test_flags_that_change_results_are_refused(flags, tmp_path):
+    got = outcome(tmp_path, CHECK, [CORE / "src/rounding.c"], "-ffp-contract=off", *flags.split())
+    assert got == ERROR_BUILD or ("error: " in got and "Saddlewalk: " in got)
+
+
+def test_a_contracted_multiply_add_is_refused_by_init(tmp_path):
+    fused = ["-mfma"] if platform.machine() == "x86_64" else []
+    if fused and " fma " not in Path("/proc/cpuinfo").read_text():
+        pytest.skip("this processor has no fused multiply-add")
+    sources = list((CORE / "src").glob("*.c"))
+    assert outcome(tmp_path, INIT, sources, *fused, "-ffp-contract=fast") == ERROR_BUILD
