@@ -25,7 +25,8 @@ from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages, TickReader
 HEEL_STRIKE_RAD = 0.17
 CLOCK_BEGIN_S = 4000.0  # so that the clock may jump back
 KNEE_HEIGHT = 0.285  # of the body's height
-REACH = 2.2  # the longest step, of half_step_max_m
+COM_SPEED_M_S = 6.0
+LONGEST_STEP = 2.1  # of half_step_max_m
 ROUNDING = 1e-3  # of the wire, at most
 STOP_WITHIN_S = 6.0  # from any speed, at the default deceleration
 
@@ -140,6 +141,7 @@ class Judge:
     told: dict[str, Told] = field(default_factory=lambda: {name: Told() for name in MESSAGES})
     flaws: Counter = field(default_factory=Counter)
     detected: int | None = None
+    walk_commanded: bool = False  # by whom the firmware shall obey
     blind: int = 0
     forged: int = 0
     states: set[str] = field(default_factory=set)
@@ -157,6 +159,8 @@ class Judge:
         if name != "COMMAND" or self._commands(signals):
             told.came_s = time_s
             told.born_s = arrival.born_s
+        if name == "COMMAND" and not arrival.forged and self._commands(signals):
+            self.walk_commanded = signals["MODE"] == 1 and signals["SPEED"] > 0
         if all(map(math.isfinite, signals.values())):
             told.usable_s = time_s
         self.forged += arrival.forged
@@ -234,9 +238,9 @@ class Judge:
             for name, value in messages[part].items()
         }
         sound = told["PLAN_STEP VALID"] == 1 and all(map(math.isfinite, told.values()))
-        for name, (low, high) in plan_bounds(self.config, self.body).items():
-            sound = sound and low <= told[name] <= high
-        if not sound:
+        bounds = plan_bounds(self.config, self.body).items()
+        within = all(low <= told[name] <= high for name, (low, high) in bounds)
+        if not (sound and within and _legs_reach(told, self.body)):
             self.flaws[BAD_PLAN] += 1
 
     def _check_scores(self, messages: Messages, ages_s: dict[str, float]) -> None:
@@ -258,7 +262,7 @@ class Judge:
         """Lost inputs stop the walk, and nothing else does without a word."""
         mode = int(messages["PLAN_EVENTS"]["MODE"])
         ended = mode in (STOPPING, STANDING) and self._mode in (STARTING, WALKING)
-        if ended and not stopping:
+        if ended and self.walk_commanded and not stopping:
             self.flaws[SILENT_STOP] += 1
         self._mode = mode
         needed = MESSAGES if self._armed else MESSAGES[:1]
@@ -273,37 +277,38 @@ class Judge:
 
 
 def plan_bounds(config: Any, body: Any) -> dict[str, tuple[float, float]]:
-    """By message and signal, what a plan for this body can say; half a step of the wire more."""
-    height_m, fastest_m_s, half_turn = config.body_height_m, body.speed_ceiling_m_s, math.pi / 2
-    reach_m, beside_m, unbounded = REACH * body.half_step_max_m, 0.5, math.inf
-    leg_m = (KNEE_HEIGHT * height_m, height_m)
+    """By message and signal: what the model gives, else what the core calls absurd if measured."""
+    fastest_m_s, upright, turned = body.speed_ceiling_m_s, math.pi / 2, 2 * math.pi
+    step_m = LONGEST_STEP * body.half_step_max_m
+    leg_m = (KNEE_HEIGHT * config.body_height_m, config.body_height_m)
     bounds = {
-        "PLAN_COM X": (-reach_m, reach_m),
-        "PLAN_COM Y": (-beside_m, beside_m),
         "PLAN_COM Z": leg_m,
-        "PLAN_COM_VELOCITY VX": (-0.5, fastest_m_s),
-        "PLAN_COM_VELOCITY VY": (-1.0, 1.0),
-        "PLAN_COM_VELOCITY VZ": (-1.5, 1.5),
-        "PLAN_LANDING X": (-reach_m, reach_m),
-        "PLAN_LANDING Y": (-beside_m, beside_m),
+        "PLAN_LANDING X": (-step_m, step_m),
         "PLAN_LANDING LEG_LENGTH": leg_m,
-        "PLAN_ANKLE TOE_OFF": (-half_turn, half_turn),
-        "PLAN_ANKLE HEEL_STRIKE": (0.0, config.heel_strike_max_rad),
+        "PLAN_ANKLE TOE_OFF": (0.0, upright),
+        "PLAN_ANKLE HEEL_STRIKE": (0.0, 2 * config.heel_strike_max_rad),  # [E12]
         "PLAN_ANKLE SPEED": (0.0, fastest_m_s),
-        "PLAN_STEP THETA": (0.0, 2 * math.pi),
-        "PLAN_STEP STEP_LENGTH": (0.0, reach_m),
-        "PLAN_EVENTS TIME_TO_VIA_POINT": (0.0, unbounded),
-        "PLAN_EVENTS TIME_TO_HEEL_STRIKE": (0.0, unbounded),
-        "PLAN_EVENTS TIME_TO_TOE_OFF": (0.0, unbounded),
-        "PLAN_PITCH LEFT": (-half_turn, half_turn),
-        "PLAN_PITCH RIGHT": (-half_turn, half_turn),
-        "PLAN_PITCH KNEE_FLEXION": (0.0, 0.2),
+        "PLAN_STEP THETA": (0.0, turned),
+        "PLAN_STEP STEP_LENGTH": (0.0, step_m),
+        "PLAN_EVENTS TIME_TO_VIA_POINT": (0.0, math.inf),
+        "PLAN_EVENTS TIME_TO_HEEL_STRIKE": (0.0, math.inf),
+        "PLAN_EVENTS TIME_TO_TOE_OFF": (0.0, math.inf),
+        "PLAN_PITCH LEFT": (-upright, upright),
+        "PLAN_PITCH RIGHT": (-upright, upright),
+        "PLAN_PITCH KNEE_FLEXION": (0.0, body.pendulum_m),
     }
+    for axis in ("VX", "VY", "VZ"):
+        bounds[f"PLAN_COM_VELOCITY {axis}"] = (-COM_SPEED_M_S, COM_SPEED_M_S)
     for side in ("LEFT", "RIGHT"):
-        bounds[f"PLAN_{side} X"] = (-reach_m, reach_m)
-        bounds[f"PLAN_{side} Y"] = (-beside_m, beside_m)
-        bounds[f"PLAN_{side} Z"] = (0.0, 2 * config.swing_clearance_m + 0.3)
+        bounds[f"PLAN_{side} Z"] = (0.0, body.pendulum_m)
     return {name: (low - ROUNDING, high + ROUNDING) for name, (low, high) in bounds.items()}
+
+
+def _legs_reach(told: dict[str, float], body: Any) -> bool:
+    """No planned foot is further from under the CoM than a leg is long."""
+    com_m = complex(told["PLAN_COM X"], told["PLAN_COM Y"])
+    feet_m = (complex(told[f"PLAN_{side} X"], told[f"PLAN_{side} Y"]) for side in ("LEFT", "RIGHT"))
+    return all(abs(foot_m - com_m) <= body.pendulum_m for foot_m in feet_m)
 
 
 def run(

@@ -1,0 +1,157 @@
+"""`saddlewalk faults`: walks on which frames, clocks and processes fail, and what comes of it."""
+
+import argparse
+import math
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from saddlewalk.config import add_body_options, load_config
+from saddlewalk.options import whole_number_in
+
+if TYPE_CHECKING:
+    from saddlewalk.fault_campaign import Outcome, Row
+    from saddlewalk.faults import Scenario
+
+RUNS = 20
+LIVE_RUNS = 0
+FILE_WIDTH = 120
+
+
+def add_parser(subparsers: Any) -> None:
+    parser = subparsers.add_parser(
+        "faults", help="walks on a bus that fails: what is detected, and is any output unsafe?"
+    )
+    parser.add_argument(
+        "--scenario",
+        type=Path,
+        metavar="FILE",
+        help="TOML with the faults, as examples/faults.toml, the default, explains",
+    )
+    parser.add_argument(
+        "--runs",
+        type=whole_number_in(1, 100_000),
+        default=RUNS,
+        metavar="N",
+        help=f"walks in lockstep for each strength of each fault (default {RUNS})",
+    )
+    parser.add_argument(
+        "--live",
+        type=whole_number_in(0, 1000),
+        default=LIVE_RUNS,
+        metavar="N",
+        help="walks in real time for each class, with saddlewalk-host over UDP and LCM "
+        f"(default {LIVE_RUNS})",
+    )
+    parser.add_argument(
+        "--seed",
+        type=whole_number_in(0, 2**32 - 1),
+        default=1,
+        metavar="N",
+        help="of everything random (default 1)",
+    )
+    parser.add_argument(
+        "--jobs",
+        type=whole_number_in(1, 1024),
+        default=len(os.sched_getaffinity(0)),
+        metavar="N",
+        help="processes that share the work (default: one for each core)",
+    )
+    add_body_options(parser)
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """1: an output was unsafe."""
+    from rich.console import Console
+
+    from saddlewalk.fault_campaign import rows_of
+    from saddlewalk.faults import read_scenario
+    from saddlewalk.paths import CHECKOUT
+
+    config = load_config(args)
+    scenario = read_scenario(args.scenario or CHECKOUT / "examples/faults.toml")
+    outcomes = _walk(args, scenario, config)
+    console = Console(width=None if sys.stdout.isatty() else FILE_WIDTH)
+    console.print(_table([row for row in rows_of(outcomes) if not row.live], "In lockstep"))
+    live = [row for row in rows_of(outcomes) if row.live]
+    if live:
+        console.print(_table(live, "In real time, by saddlewalk-host"))
+    console.print(_summary(outcomes, args.seed))
+    return 1 if any(outcome.flaws for outcome in outcomes) else 0
+
+
+def _walk(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["Outcome"]:
+    from rich.console import Console
+    from rich.progress import MofNCompleteColumn, Progress, TimeRemainingColumn
+
+    from saddlewalk.fault_campaign import campaign
+    from saddlewalk.live_faults import live_campaign, live_walks
+
+    columns = (*Progress.get_default_columns()[:2], MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("walks", total=args.runs * len(scenario.faults))
+
+        def progress(done: int) -> None:
+            bar.update(task, completed=done)
+
+        outcomes = campaign(scenario, args.runs, args.seed, config, args.jobs, progress)
+        if args.live:
+            total = len(live_walks(scenario, args.live))
+            task = bar.add_task("walks in real time", total=total)
+            outcomes += live_campaign(scenario, args.live, args.seed, config, progress)
+    return outcomes
+
+
+def _table(rows: list["Row"], title: str) -> Any:
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD)
+    table.add_column("fault")
+    for name in ("strength", "walks", "detected", "median", "max ticks"):
+        table.add_column(name, justify="right")
+    table.add_column("state reached")
+    for name in ("unsafe", "blind", "forged", "fell"):
+        table.add_column(name, justify="right")
+    for row in rows:
+        table.add_row(
+            _name(row),
+            f"{row.fault.strength:g}",
+            f"{row.runs}",
+            f"{row.detected}",
+            _number(row.median_ticks),
+            _number(row.max_ticks),
+            ", ".join(f"{state} {count}" for state, count in row.states.items()),
+            f"{row.unsafe}",
+            "-" if row.live else f"{row.blind}",
+            "-" if row.live else f"{row.forged}",
+            f"{row.fell}",
+        )
+    return table
+
+
+def _name(row: "Row") -> str:
+    """The class, and where the scenario says so its messages."""
+    from saddlewalk.faults import KINDS
+
+    fault = row.fault
+    if not fault.messages or fault.messages == KINDS[fault.kind].messages:
+        return fault.kind
+    names = (name.removeprefix("MEASURED_").lower() for name in fault.messages)
+    return f"{fault.kind} {' '.join(names)}"
+
+
+def _number(value: float) -> str:
+    return f"{value:g}" if math.isfinite(value) else "-"
+
+
+def _summary(outcomes: list["Outcome"], seed: int) -> str:
+    from collections import Counter
+
+    unsafe = [outcome for outcome in outcomes if outcome.flaws]
+    flaws = Counter(flaw for outcome in unsafe for flaw in outcome.flaws)
+    words = ", ".join(f"{flaw} {count}" for flaw, count in flaws.items())
+    told = f": {words}" if words else ""
+    return f"{len(outcomes)} walks, seed {seed}: {len(unsafe)} with an unsafe output{told}"
