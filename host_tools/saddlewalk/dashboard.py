@@ -28,6 +28,7 @@ STATUSES = (
     "ERROR_UNINITIALISED",
     "ERROR_TIME",
     "ERROR_COMMAND",
+    "ERROR_BUILD",
 )
 MODES = ("standing", "starting", "walking", "stopping")
 LIMITS = ("SPEED", "HEEL_STRIKE", "TOE_OFF", "FEET", "TICK_GAP", "SAFE_STOP")

@@ -121,6 +121,7 @@ class Sender:
         data = message.encode(counter, values)
         return can.Message(arbitration_id=message.id, is_extended_id=False, data=data)
 
+
 def _follows(counter: int, before: int) -> bool:
     return 1 <= (counter - before) % COUNTERS <= COUNTER_STEP_MAX
 
