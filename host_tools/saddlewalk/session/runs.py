@@ -132,10 +132,10 @@ def load_session(path: Path) -> Session:
     truth: list[Any] = []
     runs = list(_runs(_ticks(_told(log.records, unreadable, truth))))
     if not runs:
-        others = ", ".join(sorted(unreadable)[:5])
+        others = f", on {', '.join(map(repr, sorted(unreadable)[:5]))}," if unreadable else ""
         raise UserError(
-            f"{path}: none of its {len(log.records)} messages{others and f', on {others}'} is one "
-            "that this version's firmware sends: give a log of SADDLEWALK_ channels"
+            f"{path}: none of its {len(log.records)} messages{others} is one that "
+            "this version's firmware sends: give a log of SADDLEWALK_ channels"
         )
     if len(runs) > RUNS_MAX:
         raise UserError(

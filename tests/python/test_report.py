@@ -1,0 +1,372 @@
+"""`saddlewalk report`: the page's numbers are the log's, and what the log lacks is said."""
+
+import html.parser
+import math
+import re
+from collections import Counter
+from itertools import pairwise
+from pathlib import Path
+
+import lcm
+import numpy as np
+import pytest
+
+from saddlewalk.cli import main
+from saddlewalk.logs import Event, decode, load_lcm_log
+from saddlewalk.session import page as session_page
+from saddlewalk.session.pictures import Picture
+from saddlewalk.session.steps import variability
+from saddlewalk.ticks import TICK_S
+from saddlewalk.verdict import LEVELS, reason_words
+
+TICKS = 163  # of the walk of 13 s
+AGES = ("age of", "median (ms)", "95 % below (ms)", "oldest (ms)", "ticks before it came")
+TROUBLES = ("fault or limit", "meaning", "times", "in all (s)", "first at (s)", "last at (s)")
+ALARMS = ("start (s)", "duration (s)", "level", "reason")
+VARIABILITY = ("steps", "foot", "what", "number", "mean", "SD", "CV")
+
+
+class Page(html.parser.HTMLParser):
+    """What a browser makes of a page: words, tables by their header, addresses."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tables: dict[tuple[str, ...], list[list[str]]] = {}
+        self.addresses: list[str] = []
+        self.tags: Counter[str] = Counter()
+        self.open_tags: list[str] = []
+        self.text = ""
+
+    def handle_startendtag(self, tag, attributes):
+        self.handle_starttag(tag, attributes)
+
+    def handle_starttag(self, tag, attributes):
+        self.tags[tag] += 1
+        self.addresses += [value for name, value in attributes if name in ("src", "href")]
+        if tag not in ("meta", "img", "br", "hr"):
+            self.open_tags.append(tag)
+        if tag == "table":
+            self.rows = []
+        elif tag == "tr":
+            self.rows.append([])
+        elif tag in ("td", "th"):
+            self.rows[-1].append("")
+
+    def handle_endtag(self, tag):
+        assert self.open_tags.pop() == tag
+        if tag == "table":
+            self.tables.setdefault(tuple(self.rows[0]), []).extend(self.rows[1:])
+
+    def handle_data(self, data):
+        if "style" in self.open_tags:
+            assert "url(" not in data and "@import" not in data
+        elif {"td", "th"} & set(self.open_tags):
+            self.rows[-1][-1] += data
+        else:
+            self.text += data
+
+    def told(self, *header: str) -> dict[str, str]:
+        """A table of two columns."""
+        return dict(self.tables[header])
+
+    @property
+    def short(self) -> dict[str, str]:
+        return self.told("what", "how much")
+
+
+@pytest.fixture
+def unseen(monkeypatch) -> None:
+    """Pages without the pictures, which take a second to draw."""
+    pictures = dict.fromkeys(("level", "scores"), Picture("", b""))
+    monkeypatch.setattr(session_page, "draw", lambda *_: pictures)
+
+
+def read(path: Path) -> Page:
+    page = Page()
+    page.feed(path.read_text(encoding="utf-8"))
+    page.close()
+    assert not page.open_tags
+    return page
+
+
+def report(log: Path, out: Path, status: int = 0) -> Page:
+    assert main(["report", str(log), "--out", str(out)]) == status
+    return read(out)
+
+
+def events_of(walk: Path) -> list[Event]:
+    return load_lcm_log(walk / "walk.lcmlog").records
+
+
+def write_events(path: Path, events: list[Event]) -> Path:
+    log = lcm.EventLog(str(path), "w", overwrite=True)
+    for event in events:
+        log.write_event(event.logged_us, event.channel, event.data)
+    log.close()
+    return path
+
+
+def without(events: list[Event], *names: str) -> list[Event]:
+    return [event for event in events if event.channel not in {f"SADDLEWALK_{n}" for n in names}]
+
+
+def messages(events: list[Event], name: str) -> list:
+    return [decode(event) for event in events if event.channel == f"SADDLEWALK_{name}"]
+
+
+def changed(events: list[Event], name: str, change) -> list[Event]:
+    """change: (how manieth message, message), which it may change."""
+    out, count = [], 0
+    for event in events:
+        if event.channel == f"SADDLEWALK_{name}":
+            message = decode(event)
+            change(count, message)
+            event = Event(event.logged_us, event.channel, message.encode())
+            count += 1
+        out.append(event)
+    return out
+
+
+@pytest.fixture(scope="module")
+def page(walk, tmp_path_factory) -> Page:
+    return report(walk / "walk.lcmlog", tmp_path_factory.mktemp("report") / "report.html")
+
+
+def test_the_page_is_whole_in_itself(page):
+    assert page.tags["img"] == 3 and "No fault and no limit was told." in page.text
+    assert page.addresses and all(a.startswith("data:image/png;base64,") for a in page.addresses)
+    assert not page.tags.keys() & {"script", "link", "iframe", "object"}
+    assert "Saddlewalk is no medical device." in page.text
+
+
+def test_levels_have_the_time_that_the_log_gives_them(walk, page):
+    levels = Counter(LEVELS[message.level] for message in messages(events_of(walk), "VERDICT"))
+    rows = page.tables["level", "time (s)", "share"]
+    assert [row[0] for row in rows] == ["stable", "caution", "unstable", "unknown"]
+    for name, held_s, share in rows:
+        assert float(held_s) == pytest.approx(levels[name] * TICK_S, abs=0.005)
+        assert float(share.rstrip("%")) == pytest.approx(100 * levels[name] / TICKS, abs=0.05)
+    assert levels["stable"] > 100
+
+
+def test_distance_and_speed_are_the_wearers(walk, page):
+    truth = messages(events_of(walk), "TRUTH")
+    walked_m = truth[-2].com_m[0] - truth[0].com_m[0]  # the truth after a tick is the next one's
+    told = re.fullmatch(r"(\S+) m, measured", page.short["distance of the CoM"])
+    assert float(told[1]) == pytest.approx(walked_m, abs=0.03) and walked_m > 10
+    assert page.short["duration"] == f"{TICKS * TICK_S:.2f} s"
+    speed = float(page.short["mean speed, over the steps"].removesuffix(" m/s"))
+    assert 0.8 * 1.2 < speed < 1.02 * 1.2  # with the start
+
+
+def test_steps_are_those_of_the_wearers_feet(walk, page):
+    """Against the truth: a foot that comes down, and where the feet are then."""
+    truth = messages(events_of(walk), "TRUTH")
+    landed = {"left": [], "right": []}
+    for before, after in pairwise(truth):
+        for side, feet in landed.items():
+            if getattr(after, f"{side}_contact") > getattr(before, f"{side}_contact"):
+                ahead_m = after.left_m[0] - after.right_m[0]
+                length_m = ahead_m if side == "left" else -ahead_m
+                feet.append((length_m, after.left_m[1] - after.right_m[1]))
+    rows = {tuple(row[:3]): row[3:] for row in page.tables[VARIABILITY]}
+    for side, feet in landed.items():
+        assert len(feet) > 5
+        for column, what in enumerate(("step length (m)", "step width (m)")):
+            number, mean, sd, cv = rows["all", side, what]
+            values = [foot[column] for foot in feet]
+            assert int(number) == len(feet)
+            assert float(mean) == pytest.approx(np.mean(values), abs=0.01)
+            assert float(sd) == pytest.approx(np.std(values, ddof=1), abs=0.01)
+            assert cv == f"{100 * float(sd) / float(mean):.1f} %" or float(mean) < 0.5
+    steady = rows["steady", "both", "step time (s)"]
+    assert 3 <= int(steady[0]) < sum(map(len, landed.values()))
+    assert float(steady[1]) == pytest.approx(2 * (0.1802 * 1.2 + 0.1351) / 1.2, abs=0.04)
+
+
+def test_variability_is_the_samples():
+    told = variability([1.0, 2.0, math.nan, 3.0])
+    assert (told.steps, told.mean, told.sd, told.cv) == (3, 2.0, 1.0, 0.5)
+    assert math.isnan(variability([1.0]).sd) and math.isnan(variability([]).mean)
+
+
+def test_alarms_have_start_duration_level_and_reason(walk, tmp_path, unseen):
+    def alarm(tick, verdict):
+        verdict.level, verdict.reason = 1, 0
+        if 40 <= tick < 50:
+            verdict.level, verdict.reason = 2, 9 if tick < 45 else 10
+        elif 50 <= tick < 53:
+            verdict.level, verdict.reason = 3, 3
+
+    log = write_events(tmp_path / "log", changed(events_of(walk), "VERDICT", alarm))
+    page = report(log, tmp_path / "a.html")
+    both = f"{reason_words(9)}; {reason_words(10)}"
+    assert page.tables[ALARMS] == [
+        ["3.20", "0.80", "caution", both],
+        ["4.00", "0.24", "unstable", reason_words(3)],
+    ]
+    assert page.short["times that the level was"] == "unstable 1, caution 1, unknown 0"
+    assert ["unstable", "0.24", f"{3 / TICKS:.1%}"] in page.tables["level", "time (s)", "share"]
+
+
+def test_faults_late_ticks_and_refused_frames_are_told(walk, tmp_path):
+    def health(tick, message):
+        message.faults = 1 << 3 if tick in (20, 21, 30) else 0
+        message.limits = message.status = 0
+
+    def status(tick, message):
+        message.late_ticks, message.missed_ticks = tick, 4
+        message.frames_bad_crc, message.frames_accepted = 7, 1234
+
+    events = changed(changed(events_of(walk), "HEALTH", health), "STATUS", status)
+    page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
+    ((name, words, *numbers),) = page.tables[TROUBLES]
+    assert (name, numbers) == ("LEFT_STALE", ["2", "0.24", "1.60", "2.40"])
+    assert words == "the left foot's measurement is too old"
+    assert f"{TICKS - 1} ticks late, 4 left out" in page.short["timing, since the firmware's start"]
+    told = page.short["CAN, since the firmware's start"]
+    assert told.startswith("1234 frames accepted, refused: 7 bad CRC")
+    assert page.tags["img"] == 4 and "When each fault and limit was told." in page.text
+
+
+def test_ages_are_the_inputs(walk, tmp_path, unseen):
+    def age(tick, message):
+        message.left_age_us = -1 if tick < 3 else 1000 * (tick - 3)
+
+    log = write_events(tmp_path / "log", changed(events_of(walk), "INPUT", age))
+    rows = report(log, tmp_path / "a.html").tables[AGES]
+    median, usual = np.percentile(range(TICKS - 3), (50, 95))
+    assert ["left foot", f"{median:.0f}", f"{usual:.0f}", f"{TICKS - 4}", "3"] in rows
+
+
+def test_gaps_are_told_and_a_silence_has_no_level(walk, tmp_path, unseen):
+    """A few ticks are bridged; of seconds nothing is known."""
+    lost = {*range(30, 33), *range(60, 100)}
+    events = [e for e in events_of(walk) if round(utime_us(e) / 80000) not in lost]
+    page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
+    rows = page.tables["gap from (s)", "duration (s)", "which"]
+    assert rows == [
+        ["2.40", "0.24", "3 ticks are not in the log"],
+        ["4.80", "3.20", "40 ticks are not in the log"],
+    ]
+    assert page.short["gaps"] == "2, 3.44 s in all"
+    assert ["silent", "3.20", f"{40 / TICKS:.1%}"] in page.tables["level", "time (s)", "share"]
+    assert "not known during 3.28 s" in page.short["distance of the CoM"]
+
+
+def utime_us(event: Event) -> int:
+    return decode(event).utime_us
+
+
+def test_without_verdicts_it_says_so(walk, tmp_path, unseen):
+    log = write_events(tmp_path / "log", without(events_of(walk), "VERDICT"))
+    page = report(log, tmp_path / "a.html")
+    assert "No verdict was logged." in page.text and ALARMS not in page.tables
+    assert "came on SADDLEWALK_VERDICT: levels, alarms, energies" in page.text
+    assert page.short["times that the level was"] == "not known"
+
+
+def test_without_inputs_steps_are_the_plans(walk, tmp_path):
+    events = events_of(walk)
+    log = write_events(tmp_path / "log", without(events, "INPUT"))
+    page = report(log, tmp_path / "a.html")
+    plans = messages(events, "PLAN")
+    assert page.short["steps"] == f"{plans[-1].step_count}, planned"
+    walked_m = plans[-1].origin_x_m + plans[-1].com_m[0] - plans[0].com_m[0]
+    assert page.short["distance of the CoM"] == f"{walked_m:.2f} m, planned"
+    assert "From the plan, not from the person" in " ".join(page.text.split())
+    assert "came on SADDLEWALK_INPUT: what was measured" in page.text and AGES not in page.tables
+    rows = {tuple(row[:3]): row[3:] for row in page.tables[VARIABILITY]}
+    of_model = {"step length (m)": 2 * (0.1802 * 1.2 + 0.1351), "step width (m)": 0.1}
+    for what, value in of_model.items():
+        number, mean, _, _ = rows["steady", "both", what]
+        assert int(number) > 3 and float(mean) == pytest.approx(value, abs=0.005)
+
+
+def test_with_scores_alone_there_still_is_a_page(walk, tmp_path):
+    events = [e for e in events_of(walk) if e.channel == "SADDLEWALK_SCORES"]
+    page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
+    assert page.text.count("Nothing that can be read came on") == 6
+    assert page.short["steps, distance, speed"] == "not known"
+    assert "Neither measured feet nor a plan was logged." in page.text
+
+
+def test_configuration_and_versions_are_the_logs(walk, page):
+    config = messages(events_of(walk), "CONFIG")[0]
+    told = page.told("what", "value")
+    assert told["library"] == config.library_version and told["clock"] == "lockstep"
+    values = {name: float(told[name]) for name in config.name}
+    assert values == pytest.approx(dict(zip(config.name, config.value, strict=True)), rel=1e-6)
+
+
+def test_runs_after_one_another_each_have_their_part(walk, tmp_path, unseen):
+    events = events_of(walk)
+    page = report(write_events(tmp_path / "log", [*events, *events]), tmp_path / "a.html")
+    assert "Run 1 of 2" in page.text and "Run 2 of 2" in page.text
+    durations = [row for row in page.tables["what", "how much"] if row[0] == "duration"]
+    assert durations == [["duration", f"{TICKS * TICK_S:.2f} s"]] * 2
+
+
+def test_text_of_a_log_is_text_on_the_page(walk, tmp_path, unseen):
+    evil = '<script src="http://x/y">|![a](http://x/z)'
+
+    def version(_, config):
+        config.library_version = evil
+
+    events = changed(events_of(walk), "CONFIG", version)
+    events.append(Event(events[-1].logged_us, "A<img src=x>", b"other"))
+    page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
+    assert page.told("what", "value")["library"] == evil
+    assert "1 on A<img src=x>" in page.text
+    assert all(address.startswith("data:") for address in page.addresses)
+
+
+def test_of_a_log_that_was_cut_the_rest_is_reported(walk, tmp_path, unseen, capsys):
+    cut = tmp_path / "cut.lcmlog"
+    cut.write_bytes((walk / "walk.lcmlog").read_bytes()[:100000])
+    page = report(cut, tmp_path / "a.html", status=1)
+    assert "The log is incomplete:" in page.text
+    assert "incomplete: " in capsys.readouterr().err
+
+
+def refused(arguments: list[str], capsys) -> str:
+    assert main(["report", *arguments]) == 2
+    told = capsys.readouterr()
+    assert (told.out, told.err.count("\n")) == ("", 1)
+    return told.err
+
+
+@pytest.mark.parametrize(
+    ("content", "named"),
+    [
+        (b"", "is empty"),
+        (b"t_s,x\n1,2\n", "is no LCM log"),
+        (b"\xed\xa1\xda\x01ab", "not one event"),
+    ],
+)
+def test_what_is_no_log_is_one_line_and_nothing_is_written(tmp_path, capsys, content, named):
+    (tmp_path / "log").write_bytes(content)
+    assert named in refused([str(tmp_path / "log")], capsys)
+    assert [path.name for path in tmp_path.iterdir()] == ["log"]
+
+
+def test_logs_of_others_and_of_two_firmwares_at_once_are_refused(walk, tmp_path, capsys):
+    others = write_events(tmp_path / "others", [Event(1, "CAMERA", b"picture")])
+    assert "1 messages, on 'CAMERA', is one" in refused([str(others)], capsys)
+    health = [e for e in events_of(walk) if e.channel == "SADDLEWALK_HEALTH"]
+    both = [event for pair in zip(health[50:], health, strict=False) for event in pair]
+    log = write_events(tmp_path / "both", both)
+    assert "two firmware processes are logged at once" in refused([str(log)], capsys)
+    assert {path.name for path in tmp_path.iterdir()} == {"others", "both"}
+
+
+def test_where_it_is_written(walk, tmp_path, unseen, capsys):
+    log = write_events(tmp_path / "a.lcmlog", events_of(walk)[:200])
+    assert main(["report", str(log)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "a.lcmlog.html")
+    deep, missing = str(tmp_path / "no" / "where.html"), str(tmp_path / "none")
+    assert f"--out {deep}" in refused([str(log), "--out", deep], capsys)
+    assert f"--out {tmp_path}" in refused([str(log), "--out", str(tmp_path)], capsys)
+    assert "is the log itself" in refused([str(log), "--out", str(log)], capsys)
+    assert f"{missing}: No such file" in refused([missing], capsys)
+    assert {path.name for path in tmp_path.iterdir()} == {"a.lcmlog", "a.lcmlog.html"}
