@@ -5,7 +5,7 @@ import signal
 import subprocess
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import replace
 from typing import Any
@@ -70,10 +70,25 @@ class FaultyLcm:
         numbers = {"SPEED": told.speed_m_s, "HEEL_STRIKE": told.heel_strike_rad}
         self._line.send(self._sender.frame("COMMAND", MODE=told.mode, **numbers), self._now_s())
         for arrival in self._line.due(self._now_s()):
+            if arrival.forged:  # what is flipped there, UDP drops; nobody else speaks
+                continue
             signals = wire.signals(arrival.frame)
             told.mode, told.speed_m_s = int(signals["MODE"]), signals["SPEED"]
             told.heel_strike_rad = signals["HEEL_STRIKE"]
             self._lcm.publish(channel, told.encode())
+
+
+def faulty(
+    bus: can.BusABC, lcm: Any, happenings: Sequence[Happening], seed: int
+) -> tuple[FaultyBus, FaultyLcm]:
+    """Both with all of these faults, from now on."""
+    begin_s = time.monotonic()
+
+    def now_s() -> float:
+        return time.monotonic() - begin_s
+
+    frames, commands = (Line(happenings, np.random.default_rng([seed, way])) for way in range(2))
+    return FaultyBus(bus, frames, now_s), FaultyLcm(lcm, commands, now_s)
 
 
 class _Judging(Observer):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from host_node import own_lcm
+from host_node import QUICK, Host, own_lcm
 from saddlewalk import core, wire
 from saddlewalk.cli import main
 from saddlewalk.config import configuration
@@ -308,6 +308,31 @@ def test_the_command_prints_its_table(tmp_path, capsys):
     assert out.splitlines()[-1] == "1 walks, seed 1: 0 with an unsafe output"
     assert main(["faults", "--scenario", str(tmp_path / "none.toml")]) == 2
     assert "No such file" in capsys.readouterr().err
+
+
+def test_emulate_has_a_bus_that_fails(tmp_path, capsys):
+    url, path = own_lcm(), tmp_path / "scenario.toml"
+    lost = FAULT.replace("0.5", "1").replace("from_s = 1", "from_s = 2")
+    path.write_text(WALK + lost)
+    with Host("--lcm", url, *QUICK) as host:
+        options = ["--can", host.spec, "--lcm", url, "--faults", str(path), "--duration", "3"]
+        main(["emulate", *options])
+        told = capsys.readouterr().out
+        assert "  walking" in told and "  stopping" in told
+
+
+@pytest.mark.parametrize(
+    ("fault", "options", "named"),
+    [
+        (FAULT, ["--clock", "lockstep"], "--faults: firmware in lockstep waits"),
+        (FAULT.replace("loss", "stall"), [], "stall happens to the firmware"),
+    ],
+)
+def test_what_emulate_cannot_do_is_said(tmp_path, capsys, fault, options, named):
+    path = tmp_path / "scenario.toml"
+    path.write_text(WALK + fault)
+    assert main(["emulate", "--lcm", own_lcm(), "--faults", str(path), *options]) == 2
+    assert named in capsys.readouterr().err
 
 
 def test_the_host_process_stops_a_live_walk_whose_frames_are_lost():

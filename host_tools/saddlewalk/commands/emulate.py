@@ -2,6 +2,7 @@
 
 import argparse
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
@@ -10,6 +11,7 @@ from saddlewalk.options import add_gait_options, number_in, whole_number_in
 
 if TYPE_CHECKING:
     from saddlewalk.emulator import Noise, Push, Wearer
+    from saddlewalk.faults import Happening
     from saddlewalk.schedule import Speeds
 
 SPEED_M_S = 1.2
@@ -26,6 +28,13 @@ def add_parser(subparsers: Any) -> None:
         default=1.0,
         metavar="X",
         help="of the sensors and of the wearer's unsteadiness (default 1)",
+    )
+    parser.add_argument(
+        "--faults",
+        type=Path,
+        metavar="FILE",
+        help="TOML with what happens to the frames and commands, all at once: examples/faults.toml "
+        "explains it",
     )
     parser.set_defaults(run=run)
 
@@ -92,18 +101,42 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.emulator import Noise
     from saddlewalk.exoskeleton import Exoskeleton
     from saddlewalk.lcmbus import open_lcm
+    from saddlewalk.live_faults import faulty
     from saddlewalk.schedule import schedule_of
 
     wearer = wearer_of(args, load_config(args), Noise().scaled(args.noise_scale))
     schedule = schedule_of(speeds_of(args, [(0.0, SPEED_M_S)]), math.radians(args.hs_angle))
     lcm = open_lcm(args.lcm)
+    happenings = _happenings(args)
     with open_bus(args.can) as bus:
         print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
         events = events_printer(wearer)
-        exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, [events])
+        ways = faulty(bus, lcm, happenings, args.seed) if happenings else (bus, lcm)
+        exoskeleton = Exoskeleton(ways[0], wearer, schedule, ways[1], [events])
         exoskeleton.run(args.clock, args.duration)
     print(summary(wearer, exoskeleton))
     return 1 if wearer.fallen else 0
+
+
+def _happenings(args: argparse.Namespace) -> "list[Happening]":
+    """What --faults says shall happen, each at a time that --seed draws."""
+    import numpy as np
+
+    from saddlewalk.faults import draw, read_scenario
+
+    if args.faults is None:
+        return []
+    if args.clock == "lockstep":
+        raise UserError("--faults: firmware in lockstep waits for what is lost: --clock realtime")
+    random = np.random.default_rng(args.seed)
+    happenings = [draw(fault, random) for fault in read_scenario(args.faults).faults]
+    for happening in happenings:
+        if not happening.is_of_frames:
+            raise UserError(
+                f"{args.faults}: {happening.kind} happens to the firmware, of which emulate only "
+                "sends the frames: try it with saddlewalk faults"
+            )
+    return happenings
 
 
 def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer":
