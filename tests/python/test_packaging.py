@@ -245,7 +245,7 @@ def outcome(tmp_path: Path, program: str, sources: list[Path], *flags: str) -> i
 )
 def test_flags_that_change_results_are_refused(flags, tmp_path):
     got = outcome(tmp_path, CHECK, [CORE / "src/rounding.c"], "-ffp-contract=off", *flags.split())
-    assert got == ERROR_BUILD or ("error: " in got and "Saddlewalk: " in got)
+    assert got == ERROR_BUILD or re.search("error: .*Saddlewalk: ", str(got))
 
 
 def test_a_contracted_multiply_add_is_refused_by_init(tmp_path):
