@@ -22,6 +22,7 @@ def main() -> None:
     commands = {
         Path(entry["file"]).resolve(): set(shlex.split(entry["command"]))
         for entry in json.loads(Path(sys.argv[1]).read_text())
+        if "saddle_layer_" in entry["command"]  # tests compile the sources in ways of their own
     }
     sources = sorted(Path(sys.argv[2]).resolve().glob("*.c"))
     if not sources:

@@ -16,12 +16,14 @@
 /** One rounding of a number below 1, some of them in a row: 8 x 2^-24. */
 #define FLOAT_TOLERANCE 5e-7
 
-/** So many repetitions of a random test, and so many findings in them; a twentieth where the
- *  processor is emulated. */
+/** MANY: so many repetitions of a random test, and so many findings in them; a twentieth where the
+ *  processor is emulated. EVERY: the step through a table; 1 where it is not. */
 #ifdef SADDLE_EMULATED
 #define MANY(count) ((count) / 20)
+#define EVERY(count) (count)
 #else
 #define MANY(count) (count)
+#define EVERY(count) 1
 #endif
 
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))

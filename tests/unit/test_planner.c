@@ -306,7 +306,7 @@ static void smooth_millisecond(bool cycloid)
 static void test_start_change_and_stop_are_smooth_in_every_ankle(void)
 {
     for (int ankle = 0; ankle < (int)SADDLE_ANKLE_COUNT; ankle++) {
-        for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
+        for (size_t i = 0; i < COUNT_OF(SPEEDS); i += EVERY(5)) {
             config.ankle = (saddle_ankle_t)ankle;
             stand(SPEEDS[i]);
             tick(0);
@@ -399,7 +399,7 @@ static void test_command_at_any_moment_is_obeyed_in_the_end(void)
 static void test_restart_while_stopping_is_smooth(void)
 {
     config.ankle = SADDLE_ANKLE_CYCLOID;
-    for (int moment = 0; moment < 60; moment++) {
+    for (int moment = 0; moment < 60; moment += EVERY(20)) {
         join(0.9f);
         command.speed_m_s = 0.0f;
         for (int k = 0; k < 70 * moment; k++) {

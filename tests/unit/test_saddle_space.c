@@ -191,7 +191,7 @@ static void test_polygon_is_convex_counter_clockwise_and_on_the_border(void)
     static twin_t twin;
     uint32_t state = 17;
     TEST_ASSERT_EQUAL_INT(16, SADDLE_BOS_VERTICES);
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < MANY(100); i++) {
         const float reach = (i & 1) != 0 ? 1.0f : 0.1f;
         const saddle_vec2_t cop[2] = {random_point(&state, reach), random_point(&state, reach)};
         const saddle_bos_t bos = saddle_bos(cop, HALF_DEPTH_M, 1.0f);
