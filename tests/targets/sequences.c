@@ -4,7 +4,7 @@
 
 #define TICK_US 80000u
 #define TICKS_PER_COMMAND 40u
-#define TICKS_PER_BODY 2000u
+#define TICKS_PER_BODY 500u
 
 /* xorshift32 */
 static uint32_t random_bits(sequence_t *sequence)
