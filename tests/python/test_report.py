@@ -14,7 +14,7 @@ import pytest
 from saddlewalk.cli import main
 from saddlewalk.logs import Event, decode, load_lcm_log
 from saddlewalk.session import page as session_page
-from saddlewalk.session.pictures import Picture
+from saddlewalk.session import pictures
 from saddlewalk.session.steps import variability
 from saddlewalk.ticks import TICK_S
 from saddlewalk.verdict import LEVELS, reason_words
@@ -77,8 +77,8 @@ class Page(html.parser.HTMLParser):
 @pytest.fixture
 def unseen(monkeypatch) -> None:
     """Pages without the pictures, which take a second to draw."""
-    pictures = dict.fromkeys(("level", "scores"), Picture("", b""))
-    monkeypatch.setattr(session_page, "draw", lambda *_: pictures)
+    blank = dict.fromkeys(("level", "scores"), pictures.Picture("", b""))
+    monkeypatch.setattr(session_page, "draw", lambda *_: blank)
 
 
 def read(path: Path) -> Page:
@@ -207,6 +207,18 @@ def test_alarms_have_start_duration_level_and_reason(walk, tmp_path, unseen):
     ]
     assert page.short["times that the level was"] == "unstable 1, caution 1, unknown 0"
     assert ["unstable", "0.24", f"{3 / TICKS:.1%}"] in page.tables["level", "time (s)", "share"]
+
+
+def test_the_worst_alarms_of_a_long_run_are_shown_closely(walk, tmp_path, monkeypatch):
+    def alarm(tick, verdict):
+        starts = {20: 2, 40: 3, 60: 2, 61: 2, 80: 2, 81: 2, 82: 2}
+        verdict.level, verdict.reason = starts.get(tick, 1), 0
+
+    monkeypatch.setattr(pictures, "LONG_S", 5.0)
+    log = write_events(tmp_path / "log", changed(events_of(walk), "VERDICT", alarm))
+    page = report(log, tmp_path / "a.html")
+    told = re.findall(r"The same closely: (\w+) from (\S+) s\.", page.text)
+    assert told == [("unstable", "3.20"), ("caution", "4.80"), ("caution", "6.40")]
 
 
 def test_faults_late_ticks_and_refused_frames_are_told(walk, tmp_path):

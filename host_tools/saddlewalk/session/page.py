@@ -60,6 +60,7 @@ def write_page(log: Path, session: Session) -> str:
             f"## In short\n\n{_in_short(run, way)}",
             f"## Levels and alarms\n\n{shown['level']}\n\n{_levels(run)}\n\n{_alarms(run)}",
             f"## Scores\n\n{shown['scores']}",
+            *(words for kind, words in shown.items() if kind.startswith("alarm")),
             f"## Steps\n\n{_steps(way)}\n\n{shown.get('steps', '')}",
             f"## Data quality\n\n{_quality(run, found)}\n\n{shown.get('troubles', '')}",
             f"## Configuration\n\n{_configuration(run)}",

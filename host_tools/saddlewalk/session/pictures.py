@@ -12,7 +12,7 @@ from saddlewalk.pictures import BLUE, FEET, GREEN, LANES, ORANGE
 from saddlewalk.session.quality import Trouble
 from saddlewalk.session.runs import Run, Span
 from saddlewalk.session.steps import QUANTITIES, Way
-from saddlewalk.verdict import LEVELS, reason_words
+from saddlewalk.verdict import LEVELS, level_name, reason_words
 
 SHADES = {LEVELS.index("caution"): 0.15, LEVELS.index("unstable"): 0.35}
 STYLES = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."))
@@ -20,6 +20,10 @@ SHOWN_M = (-0.8, 0.6)  # margins; after a fall they are far below
 SHOWN_J = (-60.0, 120.0)
 SHOWN_SCORES = (-0.5, 1.6)
 NO_NUMBERS = "not known"
+LONG_S = 60.0  # a longer run's worst alarms are also shown closely
+WORST = 3
+AROUND_S = 3.0  # shown before and after an alarm
+CLOSELY_S = 15.0  # at most
 
 Line = tuple[str, np.ndarray]  # label, a number of each tick
 
@@ -31,11 +35,14 @@ class Picture:
 
 
 def draw(run: Run, way: Way | None, troubles: Sequence[Trouble]) -> dict[str, Picture]:
-    """By what they show; steps and troubles only where there are some."""
+    """By what they show; steps, troubles and alarms only where there are some."""
     pictures = {
         "level": Picture(_LEVEL, _draw_level(run)),
         "scores": Picture(_SCORES, _draw_scores(run)),
     }
+    for number, span in enumerate(_worst(run), start=1):
+        caption = _ALARM.format(level_name(span.value), span.start_s)
+        pictures[f"alarm-{number}"] = Picture(caption, _draw_scores(run, *_about(span)))
     if way and way.steps:
         caption = _STEPS.format("as measured" if way.measured else "as planned")
         pictures["steps"] = Picture(caption, _draw_steps(run, way))
@@ -51,8 +58,10 @@ _LEVEL = (
 _SCORES = (
     "Speed; scores (1: the reference, 0: the limit); margins in the base of support and the reach "
     "that a recovery step has left (negative: outside, or lacking); energy beyond that of standing "
-    "still and beyond the plan's. Shaded: the alarms, caution lightly and unstable darkly."
+    "still and beyond the plan's. Shaded: the alarms, caution lightly and unstable darkly. "
+    "What lies far beyond is cut off."
 )
+_ALARM = "The same closely: {} from {:.2f} s."
 _STEPS = "Each step, {}, by the foot that landed."
 _TROUBLES = "When each fault and limit was told."
 
@@ -84,7 +93,22 @@ def _bar(axes: Axes, spans: Sequence[Span], lane: int, style: dict) -> None:
     axes.broken_barh(extents, (lane - 0.4, 0.8), lw=0, **style)
 
 
-def _draw_scores(run: Run) -> bytes:
+def _worst(run: Run) -> list[Span]:
+    """The alarms of a long run that matter most, in the order of their coming."""
+    if run.duration_s < LONG_S:
+        return []
+    found = [span for span in run.spans(run.levels) if span.value in SHADES]
+    found.sort(key=lambda span: (span.value, span.duration_s), reverse=True)
+    return sorted(found[:WORST], key=lambda span: span.start_s)
+
+
+def _about(span: Span) -> tuple[float, float]:
+    from_s = max(span.start_s - AROUND_S, 0.0)
+    return from_s, min(span.start_s + span.duration_s + AROUND_S, from_s + CLOSELY_S)
+
+
+def _draw_scores(run: Run, from_s: float = 0.0, to_s: float | None = None) -> bytes:
+    """The whole run, or a part of it."""
     figure = Figure(figsize=(13, 11), dpi=110, layout="constrained")
     figure.get_layout_engine().set(w_pad=0.1)
     speed, scores, margins, energy = figure.subplots(4, 1, sharex=True)
@@ -110,6 +134,7 @@ def _draw_scores(run: Run) -> bytes:
     ]
     _lines(energy, run, lines, "excess energy (J)", SHOWN_J)
     _finish_time(figure, run)
+    energy.set_xlim(from_s, to_s or run.duration_s)
     return _png(figure)
 
 
@@ -133,6 +158,7 @@ def _lines(
             axes.plot(np.insert(at_s, silent, np.nan), broken, color=colour, ls=style, label=name)
         else:
             axes.plot([], [], color=colour, ls=style, label=f"{name}, {NO_NUMBERS}")
+    axes.axhline(0, color="0.4", lw=0.8)
     if shown:
         low, high = axes.get_ylim()
         axes.set_ylim(max(low, shown[0]), min(high, shown[1]))
@@ -140,7 +166,6 @@ def _lines(
         for span in _spans(run, run.levels == level):
             end_s = span.start_s + span.duration_s
             axes.axvspan(span.start_s, end_s, color="0.5", alpha=alpha, lw=0)
-    axes.axhline(0, color="0.4", lw=0.8)
     axes.set(ylabel=label)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
