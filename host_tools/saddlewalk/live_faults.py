@@ -18,7 +18,8 @@ from saddlewalk.bus import open_bus, private_udp
 from saddlewalk.config import host_arguments
 from saddlewalk.emulator import Body, Wearer
 from saddlewalk.exoskeleton import Exoskeleton, Observer, Tick
-from saddlewalk.fault_campaign import HEEL_STRIKE_RAD, Judge, Outcome, outcome_of
+from saddlewalk.fault_campaign import HEEL_STRIKE_RAD, Outcome, outcome_of
+from saddlewalk.fault_judge import Judge
 from saddlewalk.faults import MEASURED, MESSAGES, Happening, Line, Scenario, draw
 from saddlewalk.host import running_host
 from saddlewalk.lcmbus import open_lcm

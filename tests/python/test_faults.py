@@ -12,17 +12,8 @@ from saddlewalk import core, wire
 from saddlewalk.cli import main
 from saddlewalk.config import configuration
 from saddlewalk.errors import UserError
-from saddlewalk.fault_campaign import (
-    BAD_PLAN,
-    NO_STOP,
-    OLD_SCORE,
-    SILENT_STOP,
-    Device,
-    Judge,
-    campaign,
-    rows_of,
-    run,
-)
+from saddlewalk.fault_campaign import Device, campaign, rows_of, run
+from saddlewalk.fault_judge import BAD_PLAN, NO_STOP, OLD_SCORE, SILENT_STOP, Judge
 from saddlewalk.faults import KINDS, MEASURED, MESSAGES, Fault, Happening, Line, read_scenario
 from saddlewalk.live_faults import live_walks, run_live
 
