@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo test test-clang test-sanitize test-socketcan test-flood samples neighbours format clean help
+.PHONY: build demo test test-clang test-sanitize test-socketcan test-flood test-targets samples neighbours format clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -26,6 +26,13 @@ test-socketcan: build .venv/installed-test ## the tests on the kernel's own CAN,
 
 test-flood: build .venv/installed-test ## 5,000 frames a second for a minute
 	@$(BIN)/pytest -m flood --junit-xml build/reports/flood.xml
+
+test-targets: build .venv/installed-test ## the core, the wire and their tests on controllers that QEMU emulates; docs/costs.md
+	@$(BIN)/ninja -C build --quiet count_calls
+	@$(BIN)/python tests/targets/run.py $(TARGETS)
+	@$(BIN)/python tests/summary.py $(TARGETS:%=build-%/reports/ctest.xml)
+
+TARGETS := cortex-m4f cortex-m7 cortex-m33 cortex-m3 rv32imafc i686 powerpc
 
 # $(call run_tests,BUILD_DIR,CTEST_PRESET,ENVIRONMENT_OF_PYTEST)
 define run_tests
@@ -50,7 +57,7 @@ format: .venv/installed-test ## lay out the Python code
 	@$(BIN)/ruff format .
 
 clean: ## remove all that was built, and the virtual environment
-	rm -rf .venv build build-clang build-sanitize out
+	rm -rf .venv build build-* out
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 15

@@ -1,0 +1,34 @@
+/* What there is to be measured, in one image: initialisations, then ticks of every kind.
+ *
+ * Prints the sizes, then one line for each tick in turn, `tick MODE LEVEL FAULTS`, by which the
+ * counted instructions are told apart. */
+#include "sequences.h"
+
+#include <stdio.h>
+
+#define TICKS 4000u
+
+static void print_sizes(void)
+{
+    printf("size context %u\n", (unsigned)sizeof(saddle_context_t));
+    printf("size config %u\n", (unsigned)sizeof(saddle_config_t));
+    printf("size input %u\n", (unsigned)sizeof(saddle_input_t));
+    printf("size output %u\n", (unsigned)sizeof(saddle_output_t));
+    printf("size receiver %u\n", (unsigned)sizeof(saddle_wire_receiver_t));
+}
+
+int main(void)
+{
+    static sequence_t sequence;
+    print_sizes();
+    for (int kind = 0; kind < (int)SEQUENCE_COUNT; kind++) {
+        sequence_begin(&sequence, (sequence_kind_t)kind);
+        while (sequence.ticks < TICKS) {
+            sequence_tick(&sequence);
+            printf("tick %u %u %lx %u\n", (unsigned)sequence.output.plan.mode,
+                   (unsigned)sequence.output.verdict.level, (unsigned long)sequence.output.faults,
+                   (unsigned)sequence.output.status);
+        }
+    }
+    return 0;
+}
