@@ -1,9 +1,11 @@
 """`saddlewalk faults`: walks on which frames, clocks and processes fail, and what comes of it."""
 
 import argparse
+import contextlib
 import math
 import os
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -72,36 +74,42 @@ def run(args: argparse.Namespace) -> int:
 
     config = load_config(args)
     scenario = read_scenario(args.scenario or CHECKOUT / "examples/faults.toml")
-    outcomes = _walk(args, scenario, config)
     console = Console(width=None if sys.stdout.isatty() else FILE_WIDTH)
-    console.print(_table([row for row in rows_of(outcomes) if not row.live], "In lockstep"))
-    live = [row for row in rows_of(outcomes) if row.live]
-    if live:
-        console.print(_table(live, "In real time, by saddlewalk-host"))
+    outcomes = _in_lockstep(args, scenario, config)
+    console.print(_table(rows_of(outcomes), "In lockstep"))
+    if args.live:
+        live = _live(args, scenario, config)
+        console.print(_table(rows_of(live), "In real time, by saddlewalk-host"))
+        outcomes += live
     console.print(_summary(outcomes, args.seed))
     return 1 if any(outcome.flaws for outcome in outcomes) else 0
 
 
-def _walk(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["Outcome"]:
+def _in_lockstep(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["Outcome"]:
+    from saddlewalk.fault_campaign import campaign
+
+    with _progress("walks", args.runs * len(scenario.faults)) as progress:
+        return campaign(scenario, args.runs, args.seed, config, args.jobs, progress)
+
+
+def _live(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["Outcome"]:
+    from saddlewalk.live_faults import live_campaign, live_walks
+
+    total = len(live_walks(scenario, args.live))
+    with _progress("walks in real time", total) as progress:
+        return live_campaign(scenario, args.live, args.seed, config, progress)
+
+
+@contextlib.contextmanager
+def _progress(what: str, total: int) -> Iterator[Callable[[int], None]]:
+    """A bar on standard error; gives what tells it how many are done."""
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TimeRemainingColumn
 
-    from saddlewalk.fault_campaign import campaign
-    from saddlewalk.live_faults import live_campaign, live_walks
-
     columns = (*Progress.get_default_columns()[:2], MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("walks", total=args.runs * len(scenario.faults))
-
-        def progress(done: int) -> None:
-            bar.update(task, completed=done)
-
-        outcomes = campaign(scenario, args.runs, args.seed, config, args.jobs, progress)
-        if args.live:
-            total = len(live_walks(scenario, args.live))
-            task = bar.add_task("walks in real time", total=total)
-            outcomes += live_campaign(scenario, args.live, args.seed, config, progress)
-    return outcomes
+        task = bar.add_task(what, total=total)
+        yield lambda done: bar.update(task, completed=done)
 
 
 def _table(rows: list["Row"], title: str) -> Any:
