@@ -15,6 +15,7 @@ from saddlewalk.cli import main
 from saddlewalk.logs import Event, decode, load_lcm_log
 from saddlewalk.session import page as session_page
 from saddlewalk.session import pictures
+from saddlewalk.session.runs import load_session
 from saddlewalk.session.steps import variability
 from saddlewalk.ticks import TICK_S
 from saddlewalk.verdict import LEVELS, reason_words
@@ -262,6 +263,8 @@ def test_gaps_are_told_and_a_silence_has_no_level(walk, tmp_path, unseen):
         ["4.80", "3.20", "40 ticks are not in the log"],
     ]
     assert page.short["gaps"] == "2, 3.44 s in all"
+    times_s = [float(row[1]) for row in page.tables["level", "time (s)", "share"]]
+    assert sum(times_s) == pytest.approx(TICKS * TICK_S, abs=0.03)
     assert ["silent", "3.20", f"{40 / TICKS:.1%}"] in page.tables["level", "time (s)", "share"]
     assert "not known during 3.28 s" in page.short["distance of the CoM"]
 
@@ -317,6 +320,17 @@ def test_runs_after_one_another_each_have_their_part(walk, tmp_path, unseen):
     assert "Run 1 of 2" in page.text and "Run 2 of 2" in page.text
     durations = [row for row in page.tables["what", "how much"] if row[0] == "duration"]
     assert durations == [["duration", f"{TICKS * TICK_S:.2f} s"]] * 2
+
+
+def test_a_run_ends_where_time_or_the_number_of_the_ticks_goes_back(walk, tmp_path):
+    def later(_, message):
+        message.utime_us += 60_000_000
+
+    scores = [event for event in events_of(walk) if event.channel == "SADDLEWALK_SCORES"]
+    health = [event for event in events_of(walk) if event.channel == "SADDLEWALK_HEALTH"]
+    for once, again in ((scores, scores), (health, changed(health, "HEALTH", later))):
+        log = write_events(tmp_path / "log", [*once, *again])
+        assert [len(run.ticks) for run in load_session(log).runs] == [TICKS, TICKS]
 
 
 def test_text_of_a_log_is_text_on_the_page(walk, tmp_path, unseen):
