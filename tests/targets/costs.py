@@ -174,7 +174,8 @@ def measure_level(tools: Tools, level: str) -> tuple[Costs, dict[str, list[float
         "stack_init": graph.worst("saddle_init"),
         "stack_wire": max(graph.worst(f"saddle_wire_{name}") for name in WIRE),
         "init": max(counts["init"]),
-        "tick_median": kinds["walking"][MEDIAN],
+        "tick_median": statistics.median_low(counts["tick"]),
+        "walking_median": kinds["walking"][MEDIAN],
         "tick_max": max(counts["tick"]),
         "planner_max": max(counts["planner"]),
         "supervisor_max": max(counts["supervisor"]),
@@ -183,7 +184,10 @@ def measure_level(tools: Tools, level: str) -> tuple[Costs, dict[str, list[float
         "undefined_core": undefined(tools, "core", level),
         "undefined_wire": undefined(tools, "wire", level),
     }
-    costs["tick_max_to_median"] = round(costs["tick_max"] / costs["tick_median"], 3)
+    for median in ("tick", "walking"):
+        costs[f"tick_max_to_{median}_median"] = round(
+            costs["tick_max"] / costs[f"{median}_median"], 3
+        )
     return costs, kinds, printed
 
 
@@ -248,10 +252,13 @@ ROWS = [
     ("O2", "stack_init", "stack of init, -O2"),
     ("O2", "stack_wire", "stack of the wire, -O2"),
     ("O2", "init", "init, -O2, instructions"),
-    ("O2", "tick_median", "tick of a walk, -O2, median"),
+    ("O2", "tick_median", "any tick, -O2, median"),
+    ("O2", "walking_median", "tick of a walk, -O2, median"),
     ("O2", "tick_max", "any tick, -O2, maximum"),
-    ("O2", "tick_max_to_median", "maximum of any / median of a walk"),
-    ("Os", "tick_median", "tick of a walk, -Os, median"),
+    ("O2", "tick_max_to_tick_median", "maximum / median of any"),
+    ("O2", "tick_max_to_walking_median", "maximum / median of a walk"),
+    ("Os", "tick_median", "any tick, -Os, median"),
+    ("Os", "walking_median", "tick of a walk, -Os, median"),
     ("Os", "tick_max", "any tick, -Os, maximum"),
     ("O2", "planner_max", "planner in a tick, -O2, maximum"),
     ("O2", "supervisor_max", "supervisor in a tick, -O2, maximum"),
@@ -267,9 +274,10 @@ INTRODUCTION = """\
 Written by `make test-targets` from what it measured; `tests/targets/budgets.toml` holds the limits
 that fail the build, and `tests/targets/costs.py` says how each number is taken. Instructions are
 counted in QEMU, call by call, callees included; they are not cycles. Flash is what a program links
-that calls the whole interface, code and constants, without the compiler's own routines. Stack is the
-deepest way through the call graph. {ticks} ticks were measured: a wearer who follows the plan and is
-pushed, the same with absurd numbers, and with numbers that are none.
+that calls the whole interface, code and constants, without the compiler's own routines. Stack is
+the deepest way through the call graph. {ticks} ticks were measured: a wearer who follows the plan
+and is pushed, the same with absurd numbers, and with numbers that are none. Most of these stand,
+which is cheap, so the median of all says less than that of a walk.
 """
 
 
