@@ -101,6 +101,22 @@ static void test_profiles_are_the_equations_and_rates_their_derivatives(void)
     }
 }
 
+/* Θ_TO of 0.9 rad would turn the sole by 1.8 rad after the heel strike. */
+static void test_sole_turns_no_further_than_upright_and_that_is_said(void)
+{
+    saddle_transition_t transition = transition_at(1.2f, 10.0);
+    transition.toe_off_rad = 0.9f;
+    const saddle_ankle_state_t far = ankle_at(&transition, 0.3f, true);
+    TEST_ASSERT_TRUE(far.limited);
+    ASSERT_SAME_FLOAT(SADDLE_HALF_PI, far.toe_off_rad);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.57 * 1.79 + 0.2 * sin(0.25 * PI),
+                              far.leg_length_m);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, far.leg_rate_m_s);
+    const saddle_ankle_state_t near = ankle_at(&transition, 0.0f, true);
+    TEST_ASSERT_FALSE(near.limited);
+    ASSERT_SAME_FLOAT(0.9f, near.toe_off_rad);
+}
+
 static void test_far_from_the_transition_the_leg_has_its_length(void)
 {
     const saddle_transition_t transition = transition_at(0.01f, 10.0);
@@ -203,6 +219,7 @@ int main(void)
     RUN_TEST(test_heel_strikes_before_the_saddle);
     RUN_TEST(test_toe_off_beyond_the_geometry_is_limited_and_said);
     RUN_TEST(test_profiles_are_the_equations_and_rates_their_derivatives);
+    RUN_TEST(test_sole_turns_no_further_than_upright_and_that_is_said);
     RUN_TEST(test_far_from_the_transition_the_leg_has_its_length);
     RUN_TEST(test_rigid_leg_keeps_its_length);
     RUN_TEST(test_height_closes_the_triangle_and_its_rate_is_the_derivative);

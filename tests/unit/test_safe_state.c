@@ -48,6 +48,15 @@ static void test_input_that_is_stale_or_frozen_stops_in_the_same_tick(void)
     }
 }
 
+static void test_recording_goes_on_whatever_it_lacks(void)
+{
+    config.lost_inputs_stop = 0.0f;
+    for (size_t i = 0; i < COUNT_OF(LOST); i++) {
+        update(0);
+        TEST_ASSERT_FALSE(update(LOST[i]));
+    }
+}
+
 /* A number out of range for a tick or two may be a glitch: three ticks are 0.24 s. */
 static void test_measurement_that_is_unusable_stops_once_it_has_been_for_com_max_age(void)
 {
@@ -154,6 +163,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_good_inputs_never_stop);
     RUN_TEST(test_input_that_is_stale_or_frozen_stops_in_the_same_tick);
+    RUN_TEST(test_recording_goes_on_whatever_it_lacks);
     RUN_TEST(test_measurement_that_is_unusable_stops_once_it_has_been_for_com_max_age);
     RUN_TEST(test_glitches_do_not_add_up);
     RUN_TEST(test_unusable_in_turn_is_unusable_all_the_time);

@@ -797,6 +797,20 @@ static void test_level_that_comes_and_goes_is_not_announced(void)
     }
 }
 
+/* Never stable, never unstable for three ticks: a caution, for the reason of the last one. */
+static void test_level_that_flips_between_two_is_announced_as_the_lesser(void)
+{
+    config.level_hold_ticks = 3.0f;
+    for (int tick = 0; tick < 3; tick++) {
+        see(CALM);
+    }
+    for (int tick = 1; tick <= 300; tick++) {
+        see(tick % 2 == 0 ? FALLING : OFF);
+        assert_verdict(tick < 3 ? SADDLE_LEVEL_STABLE : SADDLE_LEVEL_CAUTION,
+                       tick < 3 ? SADDLE_REASON_NONE : SADDLE_REASON_XCOM_AP);
+    }
+}
+
 static void test_hold_of_a_hundred_ticks_is_kept(void)
 {
     config.level_hold_ticks = 100.0f;
@@ -866,6 +880,7 @@ int main(void)
     RUN_TEST(test_wearer_on_another_foot_than_the_plan_is_in_a_step_of_their_own);
     RUN_TEST(test_level_is_announced_once_it_has_held);
     RUN_TEST(test_level_that_comes_and_goes_is_not_announced);
+    RUN_TEST(test_level_that_flips_between_two_is_announced_as_the_lesser);
     RUN_TEST(test_hold_of_a_hundred_ticks_is_kept);
     RUN_TEST(test_unknown_is_announced_at_once_and_settles_again);
     RUN_TEST(test_reason_of_an_announced_level_is_the_present_one);

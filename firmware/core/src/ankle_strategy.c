@@ -44,16 +44,19 @@ static void at_rest(const saddle_body_t *body, saddle_ankle_state_t *ankle)
     ankle->leg_length_m = body->pendulum_m;
     ankle->knee_flexion_m = 0.0f;
     ankle->leg_rate_m_s = 0.0f;
+    ankle->limited = false;
 }
 
 saddle_ankle_angles_t saddle_ankle_angles(const saddle_config_t *config,
                                           const saddle_transition_t *transition,
                                           float since_strike_s)
 {
-    saddle_ankle_angles_t angles = {0.0f, 0.0f};
+    saddle_ankle_angles_t angles = {0.0f, 0.0f, false};
     if (config->ankle != SADDLE_ANKLE_RIGID) {
         const float progress = saddle_erf(since_strike_s / config->ankle_time_constant_s);
-        angles.toe_off_rad = transition->toe_off_rad * (1.0f + progress);
+        const float toe_off_rad = transition->toe_off_rad * (1.0f + progress);
+        angles.limited = toe_off_rad > SADDLE_HALF_PI;
+        angles.toe_off_rad = angles.limited ? SADDLE_HALF_PI : toe_off_rad;
         angles.heel_strike_rad = transition->heel_strike_rad * (1.0f - progress);
     }
     return angles;
@@ -72,8 +75,10 @@ void saddle_ankle(const saddle_config_t *config, const saddle_body_t *body,
     const float progress_rate =
         TWO_OVER_SQRT_PI * saddle_exp(-u * u) / config->ankle_time_constant_s;
     const float angle_rad = toe_off_acts ? angles.toe_off_rad : angles.heel_strike_rad;
-    const float angle_rate = progress_rate * (toe_off_acts ? transition->toe_off_rad
-                                                           : -transition->heel_strike_rad);
+    const float toe_off_rate = angles.limited ? 0.0f : transition->toe_off_rad;
+    const float angle_rate =
+        progress_rate * (toe_off_acts ? toe_off_rate : -transition->heel_strike_rad);
+    ankle->limited = angles.limited;
     ankle->toe_off_rad = angles.toe_off_rad;
     ankle->heel_strike_rad = angles.heel_strike_rad;
     ankle->leg_length_m += elongation_m(config, angle_rad);

@@ -98,8 +98,19 @@ static void pass_foot(saddle_cycle_t *cycle, const saddle_config_t *config,
             lateral, vertical);
 }
 
+static float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static float smaller(float a, float b)
+{
+    return a < b ? a : b;
+}
+
 /* The line on which the next swing foot travels, from the new stance CoP: at its place beside the
- * walking line, but between half and twice a step width from the stance foot. A last swing lands as
+ * walking line, but between half and twice a step width from the stance foot, and no wider than
+ * twice the step before: on a wider line the foot would first run backwards, [E9]. A last swing lands as
  * wide as one stands, so that the CoM stays nearer to the leg that carries it. */
 static float swing_line_y_m(const saddle_cycle_t *cycle, const saddle_config_t *config,
                             saddle_side_t foot, float speed_m_s)
@@ -108,7 +119,8 @@ static float swing_line_y_m(const saddle_cycle_t *cycle, const saddle_config_t *
     const float line_y_m = saddle_landing_y_m(config, foot, then_m_s) - cycle->stance_y_m;
     const float width_m = saddle_step_width_m(config, then_m_s);
     const float outward = foot == SADDLE_LEFT ? 1.0f : -1.0f;
-    return outward * saddle_clamp(outward * line_y_m, 0.5f * width_m, 2.0f * width_m);
+    const float widest_m = 2.0f * smaller(width_m, cycle->quarter.width_m);
+    return outward * saddle_clamp(outward * line_y_m, smaller(0.5f * width_m, widest_m), widest_m);
 }
 
 /* Let the other foot, at lifted_m, begin a swing: what it is off its line fades out. */
@@ -320,11 +332,13 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
     const float dy_m = step_m.y - cycle->last_step_m.y;
     const float old_x_m = saddle_position_to_m(cycle->position);
     const float x_m = old_x_m - dx_m;
+    const float length_m = cycle->quarter.length_m * x_m / old_x_m;
     saddle_sample_t lateral = lateral_at(cycle, old_x_m);
     lateral.value -= dy_m;
     if (saddle_cycle_before_landing(cycle) || -2.0f * old_x_m < cycle->quarter.length_m ||
         air_after_landing(cycle, old_x_m) > LANDING_AIR_MAX ||
         x_m < LANDING_STRETCH_MAX * old_x_m ||
+        length_m > larger(body->half_step_max_m, cycle->quarter.length_m) ||
         !landing_usable(cycle, config, body, step_m, (saddle_vec2_t){x_m, lateral.value})) {
         return false;
     }
@@ -332,7 +346,6 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
     saddle_cycle_pose(cycle, config, body, &pose);
     const saddle_sample_t vertical = vertical_at(cycle, config, body, old_x_m);
     const saddle_vec2_t swing_m = {pose.swing.position_m.x - dx_m, pose.swing.position_m.y - dy_m};
-    const float length_m = cycle->quarter.length_m * x_m / old_x_m;
     cycle->position = saddle_position_from_m(x_m);
     cycle->quarter_length = saddle_position_from_m(length_m);
     cycle->origin_x_nm += (int64_t)(int32_t)(1.0e9f * dx_m);
@@ -358,7 +371,7 @@ static void erf_height(const saddle_cycle_t *cycle, const saddle_config_t *confi
     const saddle_vec2_t velocity_m_s = {pose->com_velocity_m_s.x, pose->com_velocity_m_s.y};
     saddle_ankle(config, body, &cycle->transition,
                  time_s + cycle->transition.heel_strike_lead_m / shaped_m_s, before, &pose->ankle);
-    pose->ankle_limited = cycle->transition.toe_off_limited;
+    pose->ankle_limited = cycle->transition.toe_off_limited || pose->ankle.limited;
     pose->ankle.leg_rate_m_s *= speed_m_s / shaped_m_s;
     saddle_com_height(&pose->ankle, offset_m, velocity_m_s, &pose->com_m.z,
                       &pose->com_velocity_m_s.z);

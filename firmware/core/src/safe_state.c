@@ -23,5 +23,5 @@ bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_config_t 
     } else if (good && state->good_s >= config->resume_time_s) {
         state->stopped = false;
     }
-    return state->stopped;
+    return state->stopped && config->lost_inputs_stop > 0.5f;
 }

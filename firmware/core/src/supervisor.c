@@ -401,23 +401,64 @@ static saddle_level_t level_of(saddle_reason_t reason)
     }
 }
 
-/* A level is announced once it has held for long enough, unknown at once. */
+static void count(uint8_t *ticks, bool goes_on)
+{
+    *ticks = (uint8_t)(goes_on ? (*ticks < UINT8_MAX ? *ticks + 1u : UINT8_MAX) : 0u);
+}
+
+static void count_levels(saddle_supervisor_t *supervisor, uint8_t level)
+{
+    const bool known = level != (uint8_t)SADDLE_LEVEL_UNKNOWN;
+    for (uint8_t i = SADDLE_LEVEL_STABLE; i <= (uint8_t)SADDLE_LEVEL_UNSTABLE; i++) {
+        count(&supervisor->at_least_ticks[i], known && level >= i);
+        count(&supervisor->at_most_ticks[i], known && level <= i);
+    }
+}
+
+/* The worst level that has been reached or passed for long enough; the best one likewise if that is
+ * better than the announced one. The announced one if neither has. */
+static uint8_t level_held(const saddle_supervisor_t *supervisor, const saddle_config_t *config)
+{
+    const uint8_t announced = supervisor->level;
+    for (uint8_t i = SADDLE_LEVEL_UNSTABLE; i > announced && i > 0u; i--) {
+        if ((float)supervisor->at_least_ticks[i] >= config->level_hold_ticks) {
+            return i;
+        }
+    }
+    for (uint8_t i = SADDLE_LEVEL_STABLE; i < announced; i++) {
+        if ((float)supervisor->at_most_ticks[i] >= config->level_hold_ticks) {
+            return i;
+        }
+    }
+    return announced;
+}
+
+/* Why the announced level is that, whatever this tick's own reason is. */
+static saddle_reason_t announced_reason(const saddle_supervisor_t *supervisor,
+                                        saddle_reason_t reason)
+{
+    switch (supervisor->level) {
+    case SADDLE_LEVEL_STABLE: return SADDLE_REASON_NONE;
+    case SADDLE_LEVEL_CAUTION: return (saddle_reason_t)supervisor->caution_reason;
+    case SADDLE_LEVEL_UNSTABLE: return SADDLE_REASON_NO_STEP;
+    default:
+        return level_of(reason) == SADDLE_LEVEL_UNKNOWN ? reason : SADDLE_REASON_SETTLING;
+    }
+}
+
+/* A level is announced once it, or a worse one, has held for long enough, a better one likewise;
+ * unknown at once. */
 static void announce(saddle_supervisor_t *supervisor, const saddle_config_t *config,
                      saddle_reason_t reason)
 {
     const saddle_level_t level = level_of(reason);
-    const bool goes_on = supervisor->next_level == (uint8_t)level;
-    const bool counts = goes_on && supervisor->next_level_ticks < UINT8_MAX;
-    supervisor->next_level_ticks =
-        (uint8_t)(counts ? supervisor->next_level_ticks + 1u : goes_on ? UINT8_MAX : 1u);
-    supervisor->next_level = (uint8_t)level;
-    if (level == SADDLE_LEVEL_UNKNOWN || level == (saddle_level_t)supervisor->level ||
-        (float)supervisor->next_level_ticks >= config->level_hold_ticks) {
-        supervisor->level = (uint8_t)level;
-        supervisor->reason = (uint8_t)reason;
-    } else if (supervisor->level == (uint8_t)SADDLE_LEVEL_UNKNOWN) {
-        supervisor->reason = (uint8_t)SADDLE_REASON_SETTLING;
+    count_levels(supervisor, (uint8_t)level);
+    if (level == SADDLE_LEVEL_CAUTION) {
+        supervisor->caution_reason = (uint8_t)reason;
     }
+    supervisor->level = level == SADDLE_LEVEL_UNKNOWN ? (uint8_t)level
+                                                      : level_held(supervisor, config);
+    supervisor->reason = (uint8_t)announced_reason(supervisor, reason);
 }
 
 uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_config_t *config,

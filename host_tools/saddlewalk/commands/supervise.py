@@ -38,7 +38,8 @@ def add_parser(subparsers: Any) -> None:
         "--speed",
         type=speed,
         metavar="M/S",
-        help="walking speed to refer to until a step is complete",
+        help="compare with the steady walk that is planned at this speed, its left foot under the "
+        "CoM in the first row; default: with the recorded walk's own last step",
     )
     add_body_options(parser)
     parser.set_defaults(run=run)
@@ -47,7 +48,9 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     from saddlewalk.core import Command, Core
 
-    core = Core(load_config(args))
+    config = load_config(args)
+    config.lost_inputs_stop = 0.0  # a recording goes on whatever it lacks
+    core = Core(config)
     command = Command(args.speed)
     if args.speed is not None:
         core.join(command)

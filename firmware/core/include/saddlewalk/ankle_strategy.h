@@ -20,6 +20,7 @@ typedef struct {
     float leg_length_m;                 /**< stance leg, [E11] */
     float knee_flexion_m;               /**< by which the stance leg is shorter than l_p, [E25] */
     float leg_rate_m_s;                 /**< its time derivative */
+    bool limited;                       /**< an angle is beyond what an ankle does */
 } saddle_ankle_state_t;
 
 /** The transition at the saddle via point of a quarter. heel_strike_rad in [0, pi/2]. */
@@ -28,7 +29,9 @@ saddle_transition_t saddle_transition(const saddle_config_t *config, const saddl
 
 /** Ankle angles, sole to ground. */
 typedef struct {
-    float toe_off_rad, heel_strike_rad;
+    float toe_off_rad;     /**< at most pi/2, the sole upright */
+    float heel_strike_rad;
+    bool limited;          /**< toe_off_rad would be more */
 } saddle_ankle_angles_t;
 
 /** [E12] The angles since_strike_s after the nearest heel strike (negative: before it). */

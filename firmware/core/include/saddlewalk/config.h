@@ -41,6 +41,8 @@ typedef struct {
     float swing_clearance_m;          /**< height of the swing foot at mid-swing, [E10] */
     float tick_max_s;                 /**< the plan advances by no more than this in one tick */
     float command_max_age_s;          /**< an older command is not obeyed: the walk stops */
+    float lost_inputs_stop;           /**< 1: lost inputs stop the walk; 0: for recordings, or a
+                                           device with a safe state of its own */
     float resume_time_s;              /**< inputs that were lost must be good for so long */
     float com_max_age_s;              /**< older measurements of the CoM are not used */
     float foot_max_age_s;             /**< nor of a foot's CoP and contact */

@@ -111,8 +111,9 @@ typedef struct {
     saddle_watch_t watch;
     saddle_step_tracker_t steps;
     uint8_t level, reason;       /**< announced */
-    uint8_t next_level;          /**< waits to be announced */
-    uint8_t next_level_ticks;
+    uint8_t caution_reason;      /**< of the last caution */
+    uint8_t at_least_ticks[4];   /**< for how long the level has been this one or worse */
+    uint8_t at_most_ticks[4];    /**< and this one or better */
 } saddle_supervisor_t;
 
 /** Score a posture. Whatever is not known is not scored. Writes all of *scores. */
