@@ -333,6 +333,15 @@ def test_a_run_ends_where_time_or_the_number_of_the_ticks_goes_back(walk, tmp_pa
         assert [len(run.ticks) for run in load_session(log).runs] == [TICKS, TICKS]
 
 
+def test_a_configuration_alone_is_no_tick(walk, tmp_path):
+    """As when the logger was stopped between it and the rest of its tick."""
+    events = events_of(walk)
+    last = max(i for i, event in enumerate(events) if event.channel == "SADDLEWALK_CONFIG")
+    (run,) = load_session(write_events(tmp_path / "log", events[: last + 1])).runs
+    assert len(run.ticks) == utime_us(events[last]) // 80000
+    assert run.has("config") and not run.ticks[-1].messages.keys() <= {"config"}
+
+
 def test_text_of_a_log_is_text_on_the_page(walk, tmp_path, unseen):
     evil = '<script src="http://x/y">|![a](http://x/z)'
 

@@ -33,7 +33,9 @@ the sample's, CV is SD by mean.
 """
 _MEASURED = """
 From the measured feet of SADDLEWALK_INPUT, seen once a tick: each step time is within 80 ms, so an
-SD of step time below about 33 ms is not told from that of the tick.
+SD of step time below about 33 ms is not told from that of the tick. Length and width are taken at
+the landing, as the scores take them; from footprint to footprint a step is longer by as much as the
+CoP of the other foot has moved forward by then.
 """
 _PLANNED = """
 **From the plan**, not from the person: the log holds no measurement of the feet. A person who does

@@ -161,15 +161,15 @@ def _told(
 
 
 def _ticks(told: Iterator[tuple[str, Any]]) -> Iterator[Tick]:
-    """Messages of one time, none twice, are one tick."""
-    tick = None
+    """Messages of one time, none twice, are one tick; a config_t alone is none."""
+    tick = Tick(0, {})
     for name, message in told:
-        if tick is None or message.utime_us != tick.utime_us or name in tick.messages:
-            if tick:
+        if message.utime_us != tick.utime_us or name in tick.messages:
+            if tick.messages.keys() - {"config"}:
                 yield tick
             tick = Tick(message.utime_us, {})
         tick.messages[name] = message
-    if tick:
+    if tick.messages.keys() - {"config"}:
         yield tick
 
 
