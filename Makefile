@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo test test-clang test-sanitize test-socketcan test-flood test-targets samples neighbours format clean help
+.PHONY: build demo test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets samples neighbours format clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -11,10 +11,15 @@ build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlew
 demo: build ## one walk, end to end: live in the terminal, results in out/demo
 	@$(BIN)/saddlewalk demo --out out/demo
 
-test: build/build.ninja .venv/installed-test ## every test that this machine can run
+test: build/build.ninja .venv/installed-test ## every test that this machine can run in minutes
 	$(call run_tests,build,release)
+	@echo "Left out, with targets of their own: test-exhaustive test-flood test-socketcan test-targets"
 
-test-clang: build-clang/build.ninja .venv/installed-test ## the same built by clang, but for the walks over every float
+test-exhaustive: build/build.ninja .venv/installed-test ## the core's functions over every float
+	@$(BIN)/ninja -C build --quiet tests
+	@$(BIN)/ctest --preset exhaustive --output-junit reports/exhaustive.xml
+
+test-clang: build-clang/build.ninja .venv/installed-test ## the same built by clang
 	$(call run_tests,build-clang,clang)
 
 test-sanitize: build-sanitize/build.ninja .venv/installed-test ## the same with the address and undefined sanitizers
