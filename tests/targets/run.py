@@ -74,7 +74,7 @@ def run(target: str) -> None:
         steps.insert(0, [tools / "cmake", "--preset", target, "--log-level=WARNING"])
     for step in steps:
         if subprocess.run(step, cwd=ROOT, check=False).returncode:
-            print(f"{target}: failed: {build / 'Testing/Temporary/LastTest.log'} has the output")
+            print(f"{target}: {step[0].name} failed; Testing/Temporary/LastTest.log has the output")
             return
     print(f"{target}: passed")
 
