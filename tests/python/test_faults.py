@@ -269,6 +269,27 @@ def test_a_fault_is_detected_and_nothing_is_unsafe(kind, strength, detected, sta
     assert state is None or outcome.state == state
 
 
+@pytest.mark.parametrize(
+    ("kind", "strength", "messages", "index", "number"),
+    [
+        ("loss", 0.2, (), 2, 2),  # toe-off beyond upright, a step beyond reach
+        ("burst", 0.32, (), 9, 3),  # the swing foot further behind than the leg is long
+        ("reorder", 0.04, (), 17, 2),
+        ("reorder", 0.5, (), 20, 2),
+        ("reorder", 0.5, (), 20, 3),
+        ("stuck", 0, ("MEASURED_COM",), 27, 0),  # the swing foot behind the leg's reach
+        ("stuck", 0, ("MEASURED_LEFT",), 28, 2),
+        ("flip", 32, (), 44, 0),
+        ("stall", 0.5, (), 64, 3),
+    ],
+)
+def test_walks_whose_plan_was_out_of_bounds_once(kind, strength, messages, index, number):
+    fault = Fault(kind, strength, messages, (1.0, 5.0), 5.0)
+    scenario = replace(read_scenario(EXAMPLE), duration_s=14.0, faults=(fault,) * (index + 1))
+    outcome, _ = run(scenario, index, number, 1, CONFIG)
+    assert outcome.flaws == ()
+
+
 def test_late_data_are_counted_though_the_wire_cannot_tell():
     outcome, _ = run(scenario_of("delay", 0.6), 0, 0, 1, CONFIG)
     assert outcome.blind > 10

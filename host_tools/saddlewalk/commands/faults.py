@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 RUNS = 20
 LIVE_RUNS = 0
-FILE_WIDTH = 120
+FILE_WIDTH = 132
 
 
 def add_parser(subparsers: Any) -> None:
