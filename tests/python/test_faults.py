@@ -281,6 +281,7 @@ def test_a_fault_is_detected_and_nothing_is_unsafe(kind, strength, detected, sta
         ("stuck", 0, ("MEASURED_LEFT",), 28, 2),
         ("flip", 32, (), 44, 0),
         ("stall", 0.5, (), 64, 3),
+        ("delay", 0.6, (), 16, 15),  # the swing foot running backwards
     ],
 )
 def test_walks_whose_plan_was_out_of_bounds_once(kind, strength, messages, index, number):

@@ -16,7 +16,8 @@ static saddle_swing_state_t foot_at(const saddle_swing_t *line, float progress, 
 void setUp(void)
 {
     swing = (saddle_swing_t){
-        .lift_progress = 0.0f, .land_progress = 1.0f, .line_y_m = -0.1f, .clearance_m = 0.05f};
+        .lift_progress = 0.0f, .land_progress = 1.0f, .line_y_m = -0.1f, .clearance_m = 0.05f,
+        .path_width_m = 0.1f};
 }
 
 void tearDown(void) {}
@@ -28,6 +29,7 @@ static void test_foot_lies_on_the_line_through_stance_and_com(void)
         const float x = random_in(&state, -1.0f, 1.0f);
         const saddle_sample_t lateral = {random_in(&state, -0.1f, -0.02f), 0.0f};
         swing.line_y_m = random_in(&state, -0.3f, -0.15f);
+        swing.path_width_m = -swing.line_y_m;
         const saddle_swing_state_t foot = foot_at(&swing, 0.5f, x, lateral, 0.0f, 1.0f);
         const double expected = (double)swing.line_y_m * (double)x / (double)lateral.value;
         TEST_ASSERT_DOUBLE_WITHIN(2e-6, expected, foot.position_m.x); /* up to 15 m: steps of 1e-6 */
@@ -43,6 +45,18 @@ static void test_foot_passes_behind_beside_and_ahead(void)
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.7, saddle_swing_line(&swing, -0.35f, midway).value);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, saddle_swing_line(&swing, 0.0f, beside).value);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.7, saddle_swing_line(&swing, 0.35f, midway).value);
+}
+
+/* After a narrow step the foot goes to a wide line without running behind where it stood. */
+static void test_foot_follows_the_path_s_width_to_any_line(void)
+{
+    const saddle_sample_t midway = {-0.05f, 0.0f};
+    for (int side = -1; side <= 1; side += 2) {
+        const saddle_sample_t lateral = {(float)-side * midway.value, 0.0f};
+        swing.line_y_m = (float)side * 0.4f;
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.7,
+                                  saddle_swing_line(&swing, -0.35f, lateral).value);
+    }
 }
 
 static void test_slope_of_the_line_is_its_derivative(void)
@@ -134,6 +148,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_foot_lies_on_the_line_through_stance_and_com);
     RUN_TEST(test_foot_passes_behind_beside_and_ahead);
+    RUN_TEST(test_foot_follows_the_path_s_width_to_any_line);
     RUN_TEST(test_slope_of_the_line_is_its_derivative);
     RUN_TEST(test_swing_and_its_velocity_whole_and_half);
     RUN_TEST(test_foot_leaves_where_it_stood_and_lands_on_the_line_both_at_rest);

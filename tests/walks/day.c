@@ -104,7 +104,7 @@ static void pass_beside_the_stance_foot(twin_t *twin)
 static double swing_line_x(const twin_t *twin)
 {
     double slope;
-    return (twin->swing_y - twin->stance_y) * twin->x / shape_y(twin, &slope);
+    return -stance_side(twin) * twin->width * twin->x / shape_y(twin, &slope);
 }
 
 static void land(twin_t *twin)

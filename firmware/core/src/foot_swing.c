@@ -5,9 +5,10 @@
 saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle_sample_t lateral)
 {
     const float rise_m = lateral.value;
+    const float across_m = swing->line_y_m < 0.0f ? -swing->path_width_m : swing->path_width_m;
     saddle_sample_t line;
-    line.value = swing->line_y_m * x_m / rise_m;
-    line.slope = swing->line_y_m * (rise_m - lateral.slope * x_m) / (rise_m * rise_m);
+    line.value = across_m * x_m / rise_m;
+    line.slope = across_m * (rise_m - lateral.slope * x_m) / (rise_m * rise_m);
     return line;
 }
 

@@ -72,6 +72,7 @@ static void reshape(saddle_cycle_t *cycle, const saddle_config_t *config,
     const bool before = saddle_cycle_before_landing(cycle);
     const float rest_m = before ? quarter.length_m - x_m : -x_m;
     cycle->quarter = quarter;
+    cycle->swing.path_width_m = quarter.width_m;
     cycle->lateral = saddle_blend(lateral, lateral_reference(cycle, x_m), x_m, rest_m);
     if (config->ankle == SADDLE_ANKLE_CYCLOID) {
         cycle->vertical = saddle_blend(vertical, vertical_reference(cycle, body, x_m), x_m, rest_m);
@@ -103,14 +104,8 @@ static float larger(float a, float b)
     return a > b ? a : b;
 }
 
-static float smaller(float a, float b)
-{
-    return a < b ? a : b;
-}
-
 /* The line on which the next swing foot travels, from the new stance CoP: at its place beside the
- * walking line, but between half and twice a step width from the stance foot, and no wider than
- * twice the step before: on a wider line the foot would first run backwards, [E9]. A last swing lands as
+ * walking line, but between half and twice a step width from the stance foot. A last swing lands as
  * wide as one stands, so that the CoM stays nearer to the leg that carries it. */
 static float swing_line_y_m(const saddle_cycle_t *cycle, const saddle_config_t *config,
                             saddle_side_t foot, float speed_m_s)
@@ -119,8 +114,7 @@ static float swing_line_y_m(const saddle_cycle_t *cycle, const saddle_config_t *
     const float line_y_m = saddle_landing_y_m(config, foot, then_m_s) - cycle->stance_y_m;
     const float width_m = saddle_step_width_m(config, then_m_s);
     const float outward = foot == SADDLE_LEFT ? 1.0f : -1.0f;
-    const float widest_m = 2.0f * smaller(width_m, cycle->quarter.width_m);
-    return outward * saddle_clamp(outward * line_y_m, smaller(0.5f * width_m, widest_m), widest_m);
+    return outward * saddle_clamp(outward * line_y_m, 0.5f * width_m, 2.0f * width_m);
 }
 
 /* Let the other foot, at lifted_m, begin a swing: what it is off its line fades out. */
@@ -220,6 +214,7 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_config_t *config,
     cycle->position = beside ? 0 : -cycle->quarter_length;
     cycle->quarter = saddle_quarter(config, stance, saddle_position_to_m(cycle->quarter_length),
                                     saddle_magnitude(start->other_m.y), speed_m_s);
+    cycle->swing.path_width_m = cycle->quarter.width_m;
     lift_off(cycle, config, start->other_m, speed_m_s);
     if (beside) {
         cycle->quarter = saddle_quarter(config, stance, cycle->quarter.length_m,

@@ -12,6 +12,7 @@ typedef struct {
     float line_y_m;                     /**< where it lands, from the stance CoP */
     saddle_vec2_t offset_m;             /**< from the line to where it lifted off: fades out */
     float clearance_m;
+    float path_width_m;                 /**< of the quarter whose lateral path is followed */
 } saddle_swing_t;
 
 typedef struct {
@@ -19,8 +20,9 @@ typedef struct {
     saddle_vec3_t velocity_m_s;
 } saddle_swing_state_t;
 
-/** [E9] x of the point where the line from the stance CoP through the reference CoM meets
- *  y = line_y_m, and dx/d(CoM x). x_m is the CoM's, lateral its reference. */
+/** [E9] x of the point where the line from the stance CoP through the reference CoM meets the line
+ *  of the path's other foot, path_width_m away, and dx/d(CoM x). x_m is the CoM's, lateral its
+ *  reference. */
 saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle_sample_t lateral);
 
 /** [E9] [E10] The foot at a progress; x_m, lateral as above; speed_m_s that of the CoM and
