@@ -1,6 +1,7 @@
 """`saddlewalk demo` and `emulate` end to end, with the real firmware process on private ports."""
 
 import csv
+import functools
 import itertools
 import math
 import signal
@@ -237,7 +238,8 @@ def test_emulate_ends_with_status_1_after_a_fall(ports, capsys):
 def test_demo_that_is_ended_keeps_its_logs_and_ends_the_firmware(tmp_path, ports, by):
     script = Path(sys.executable).with_name("saddlewalk")
     program = [str(script), "demo", "--out", str(tmp_path), *ports]
-    with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as process:
+    heed = functools.partial(signal.signal, by, signal.SIG_DFL)  # nohup's children ignore SIGHUP
+    with subprocess.Popen(program, stdout=subprocess.PIPE, text=True, preexec_fn=heed) as process:
         while "starting" not in process.stdout.readline():
             assert process.poll() is None
         time.sleep(0.5)
