@@ -129,7 +129,7 @@ void saddle_cmac(const saddle_cmac_key_t *key, const uint8_t *bytes, size_t leng
         bytes += BLOCK;
         length -= BLOCK;
     }
-    for (size_t i = 0; i < length; ++i) {
+    for (size_t i = 0; i < BLOCK && i < length; ++i) {
         chained[i] ^= bytes[i];
     }
     if (length < BLOCK) {
