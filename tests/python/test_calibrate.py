@@ -5,6 +5,7 @@ import argparse
 import dataclasses
 import functools
 import math
+import os
 import shutil
 import subprocess
 import tomllib
@@ -485,7 +486,10 @@ def test_header_compiles_with_the_core_and_is_the_same_configuration(person, tmp
     binary = tmp_path / "print"
     subprocess.run([compiler, *flags.split(), include, program, library, "-o", binary], check=True)
     lines = subprocess.run(
-        [binary], env={"LD_LIBRARY_PATH": str(library.parent)}, check=True, capture_output=True
+        [binary],
+        env=os.environ | {"LD_LIBRARY_PATH": str(library.parent)},
+        check=True,
+        capture_output=True,
     ).stdout.split()
     config = load_config(argparse.Namespace(config=toml, height=None, mass=None))
     assert [np.float32(line) for line in lines] == [
