@@ -20,32 +20,6 @@ static uint32_t larger(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
-saddle_wire_health_t saddle_report_can(const saddle_report_t *report)
-{
-    const saddle_timing_t *timing = report->timing;
-    const saddle_input_t *input = &report->inbox->input;
-    const saddle_wire_receiver_t *receiver = &report->inbox->receiver;
-    return (saddle_wire_health_t){
-        .late_ticks = timing->late_ticks,
-        .rejected_frames = saddle_inbox_rejected(report->inbox),
-        .period_us = timing->period_us,
-        .latency_us = timing->latency_us,
-        .latency_max_us = timing->latency_max_us,
-        .command_source = (uint8_t)report->inbox->authority,
-        .input_age_us = {[SADDLE_WIRE_COMMAND] = input->command_age_us,
-                         [SADDLE_WIRE_MEASURED_COM] = input->measurement.com.age_us,
-                         [SADDLE_WIRE_MEASURED_LEFT] =
-                             input->measurement.foot[SADDLE_LEFT].age_us,
-                         [SADDLE_WIRE_MEASURED_RIGHT] =
-                             input->measurement.foot[SADDLE_RIGHT].age_us},
-        .accepted = receiver->accepted,
-        .malformed = receiver->malformed,
-        .bad_crc = receiver->bad_crc,
-        .bad_version = receiver->bad_version,
-        .bad_counter = receiver->bad_counter,
-    };
-}
-
 saddlewalk_health_t saddle_report_health(const saddle_report_t *report,
                                          const saddle_output_t *output)
 {

@@ -1,12 +1,11 @@
-/** How the host process fares, for CAN and LCM. */
+/** How the host process fares, for LCM and for people; for CAN, see health.h. */
 #ifndef SADDLEWALK_HOST_REPORT_H
 #define SADDLEWALK_HOST_REPORT_H
 
 #include "bus.h"
-#include "inbox.h"
+#include "health.h"
 #include "lcm_port.h"
 #include "realtime.h"
-#include "timing.h"
 
 /** All that is reported on; nothing here is changed. */
 typedef struct {
@@ -16,8 +15,6 @@ typedef struct {
     const saddle_lcm_port_t *lcm;
     const saddle_realtime_t *realtime;
 } saddle_report_t;
-
-saddle_wire_health_t saddle_report_can(const saddle_report_t *report);
 
 saddlewalk_health_t saddle_report_health(const saddle_report_t *report,
                                          const saddle_output_t *output);

@@ -1,5 +1,6 @@
 #include "runner.h"
 
+#include "announce.h"
 #include "clock.h"
 #include <string.h>
 #include <sys/random.h>
@@ -50,16 +51,30 @@ static bool is_lockstep_due(const saddle_runner_t *runner)
     return runner->lockstep && saddle_inbox_set_complete(&runner->inbox);
 }
 
+/** Said once: the counts tell the rest. */
+static void announce_first_bad_version(const saddle_wire_receiver_t *receiver, uint32_t before)
+{
+    if (before == 0 && receiver->bad_version != 0) {
+        saddle_announce("COMMAND of wire version %u refused: this firmware speaks version %u",
+                        (unsigned)receiver->other_version, (unsigned)SADDLE_WIRE_VERSION);
+    }
+}
+
+static void take_frame(saddle_runner_t *runner, const saddle_bus_frame_t *frame)
+{
+    const uint32_t bad_version_before = runner->inbox.receiver.bad_version;
+    saddle_inbox_take_frame(&runner->inbox, frame->id, frame->data, frame->length,
+                            arrival_us(runner, frame->waited_us));
+    announce_first_bad_version(&runner->inbox.receiver, bad_version_before);
+}
+
 /** Take what waits on the bus; in lockstep, no more once a set of measurements is complete. */
 static void take_frames(saddle_runner_t *runner)
 {
     for (int i = 0; i < FRAMES_AT_ONCE && !is_lockstep_due(runner); ++i) {
         saddle_bus_frame_t frame;
         switch (saddle_bus_receive(runner->bus, &frame)) {
-        case SADDLE_BUS_FRAME:
-            saddle_inbox_take_frame(&runner->inbox, frame.id, frame.data, frame.length,
-                                    arrival_us(runner, frame.waited_us));
-            break;
+        case SADDLE_BUS_FRAME: take_frame(runner, &frame); break;
         case SADDLE_BUS_JUNK: ++runner->inbox.receiver.malformed; break;
         default: return;
         }
@@ -86,8 +101,7 @@ static void send_session(saddle_runner_t *runner)
 static void send_frames(saddle_runner_t *runner, const saddle_output_t *output)
 {
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
-    const saddle_report_t report = saddle_runner_report(runner);
-    const saddle_wire_health_t health = saddle_report_can(&report);
+    const saddle_wire_health_t health = saddle_health(&runner->timing, &runner->inbox);
     saddle_wire_encode_output(output, &health, (uint8_t)runner->timing.ticks, frames);
     for (size_t i = 0; i < SADDLE_WIRE_OUTPUT_FRAMES; ++i) {
         send_frame(runner, &frames[i]);

@@ -15,8 +15,6 @@
 
 #include "report.h"
 
-#define SADDLE_TICK_US 80000
-
 typedef struct {
     saddle_bus_t *bus;
     saddle_lcm_port_t *lcm;

@@ -1,12 +1,12 @@
 /**
- * What the host process was given: the newest command and measurement, when each part came, and
+ * What the firmware was given: the newest command and measurement, when each part came, and
  * what was refused and why. Knows no bus and reads no clock.
  *
  * One source of commands has authority at a time. The commands of the other are counted, not
  * obeyed, even when the first falls silent: the plan then stops the walk (safe_state.h).
  */
-#ifndef SADDLEWALK_HOST_INBOX_H
-#define SADDLEWALK_HOST_INBOX_H
+#ifndef SADDLEWALK_PORT_INBOX_H
+#define SADDLEWALK_PORT_INBOX_H
 
 #include <saddlewalk/saddlewalk.h>
 #include <saddlewalk/wire.h>

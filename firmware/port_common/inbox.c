@@ -1,7 +1,5 @@
 #include "inbox.h"
 
-#include "announce.h"
-
 #define MEASURED_SET                                                        \
     (1u << SADDLE_WIRE_MEASURED_COM | 1u << SADDLE_WIRE_MEASURED_LEFT | \
      1u << SADDLE_WIRE_MEASURED_RIGHT)
@@ -45,19 +43,9 @@ static void take_measured(saddle_inbox_t *inbox, saddle_wire_message_t message,
     inbox->set |= 1u << message;
 }
 
-/** Said once: the counts tell the rest. */
-static void announce_first_bad_version(const saddle_wire_receiver_t *receiver, uint32_t before)
-{
-    if (before == 0 && receiver->bad_version != 0) {
-        saddle_announce("COMMAND of wire version %u refused: this firmware speaks version %u",
-                        (unsigned)receiver->other_version, (unsigned)SADDLE_WIRE_VERSION);
-    }
-}
-
 void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *data,
                              size_t length, uint64_t time_us)
 {
-    const uint32_t bad_version_before = inbox->receiver.bad_version;
     const saddle_wire_message_t message = saddle_wire_accept(&inbox->receiver, id, data, length);
     if (message == SADDLE_WIRE_COMMAND) {
         saddle_command_t command;
@@ -65,8 +53,6 @@ void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *
         saddle_inbox_take_command(inbox, SADDLE_SOURCE_CAN, &command, time_us);
     } else if (message >= SADDLE_WIRE_MEASURED_COM && message <= SADDLE_WIRE_MEASURED_RIGHT) {
         take_measured(inbox, message, data, time_us);
-    } else {
-        announce_first_bad_version(&inbox->receiver, bad_version_before);
     }
 }
 

@@ -1,8 +1,11 @@
 /** How well the ticks keep their time. */
-#ifndef SADDLEWALK_HOST_TIMING_H
-#define SADDLEWALK_HOST_TIMING_H
+#ifndef SADDLEWALK_PORT_TIMING_H
+#define SADDLEWALK_PORT_TIMING_H
 
 #include <stdint.h>
+
+/** From one tick to the next. */
+#define SADDLE_TICK_US 80000u
 
 /** Bin 0: woken within 2 us of the place of the tick on the grid; bin n: from 2^n us, below
  *  2^(n+1) us; the last: anything later. */

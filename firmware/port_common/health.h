@@ -1,0 +1,10 @@
+/** How the firmware fares, as the wire tells it: TIMING, RECEIVED, INPUTS and HEALTH. */
+#ifndef SADDLEWALK_PORT_HEALTH_H
+#define SADDLEWALK_PORT_HEALTH_H
+
+#include "inbox.h"
+#include "timing.h"
+
+saddle_wire_health_t saddle_health(const saddle_timing_t *timing, const saddle_inbox_t *inbox);
+
+#endif
