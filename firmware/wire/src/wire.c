@@ -48,17 +48,22 @@ static uint16_t age_ms(uint32_t us)
     return us / 1000u < AGE_MAX_MS ? (uint16_t)(us / 1000u) : (uint16_t)AGE_MAX_MS;
 }
 
+/** What the polynomial 0x1D makes of each upper half byte. */
+static const uint8_t CRC_OF_NIBBLE[16] = {0x00, 0x1D, 0x3A, 0x27, 0x74, 0x69, 0x4E, 0x53,
+                                          0xE8, 0xF5, 0xD2, 0xCF, 0x9C, 0x81, 0xA6, 0xBB};
+
+static uint32_t crc_of_nibble(uint32_t crc)
+{
+    return (crc << 4 & 0xFFu) ^ CRC_OF_NIBBLE[crc >> 4];
+}
+
 uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length)
 {
-    uint8_t crc = 0xFFu;
+    uint32_t crc = 0xFFu;
     for (size_t i = 0; i < length; ++i) {
-        crc ^= bytes[i];
-        for (int bit = 0; bit < 8; ++bit) {
-            const uint32_t polynomial = (crc & 0x80u) != 0u ? 0x1Du : 0u;
-            crc = (uint8_t)((uint32_t)crc << 1 ^ polynomial);
-        }
+        crc = crc_of_nibble(crc_of_nibble(crc ^ bytes[i]));
     }
-    return crc ^ 0xFFu;
+    return (uint8_t)(crc ^ 0xFFu);
 }
 
 static uint8_t frame_crc(uint32_t id, const uint8_t *data)
