@@ -246,6 +246,21 @@ static void test_cos(void)
     expect_outside(saddle_cos, SADDLE_TWO_PI, 1.0f, 1.0f, 1.0f);
 }
 
+/** Every 997th float within the range and beyond it. */
+static void test_sin_cos(void)
+{
+    for (uint32_t bits = 0; bits < bits_of(INFINITY); bits += 997u) {
+        for (int negative = 0; negative < 2; negative++) {
+            const float x = negative != 0 ? -float_of(bits) : float_of(bits);
+            const saddle_sin_cos_t both = saddle_sin_cos(x);
+            expect(bits_of(both.sin) == bits_of(saddle_sin(x)), "sine", x);
+            expect(bits_of(both.cos) == bits_of(saddle_cos(x)), "cosine", x);
+        }
+    }
+    const saddle_sin_cos_t none = saddle_sin_cos(NAN);
+    expect(none.sin == 0.0f && none.cos == 1.0f, "not a number", NAN);
+}
+
 static void test_asin(void)
 {
     walk(&ASIN);
@@ -324,6 +339,7 @@ static const struct {
 } TESTS[] = {
     {"sin", test_sin},
     {"cos", test_cos},
+    {"sin_cos", test_sin_cos},
     {"asin", test_asin},
     {"erf", test_erf},
     {"erf_saturation", test_erf_saturation},

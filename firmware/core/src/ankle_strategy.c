@@ -103,11 +103,11 @@ saddle_sample_t saddle_cycloid(const saddle_body_t *body, const saddle_quarter_t
     const float offset_m = 0.5f * quarter->width_m - quarter->amplitude_m;
     const float via_point_m =
         sqrtf(body->pendulum_m * body->pendulum_m - offset_m * offset_m);
-    const float sine = saddle_sin(angle_rad);
+    const saddle_sin_cos_t angle = saddle_sin_cos(angle_rad);
     saddle_sample_t height;
-    height.value = via_point_m - quarter->vertical_m * sine * sine;
+    height.value = via_point_m - quarter->vertical_m * angle.sin * angle.sin;
     height.slope =
-        -SADDLE_PI * quarter->vertical_m * sine * saddle_cos(angle_rad) / quarter->length_m;
+        -SADDLE_PI * quarter->vertical_m * angle.sin * angle.cos / quarter->length_m;
     return height;
 }
 

@@ -10,8 +10,9 @@ saddle_sample_t saddle_com_lateral(const saddle_quarter_t *quarter, float angle_
 {
     const float outward = quarter->stance == SADDLE_LEFT ? 1.0f : -1.0f;
     const float amplitude_m = outward * quarter->amplitude_m;
+    const saddle_sin_cos_t angle = saddle_sin_cos(angle_rad);
     saddle_sample_t lateral;
-    lateral.value = amplitude_m * saddle_cos(angle_rad) - outward * 0.5f * quarter->width_m;
-    lateral.slope = -amplitude_m * saddle_sin(angle_rad) * SADDLE_HALF_PI / quarter->length_m;
+    lateral.value = amplitude_m * angle.cos - outward * 0.5f * quarter->width_m;
+    lateral.slope = -amplitude_m * angle.sin * SADDLE_HALF_PI / quarter->length_m;
     return lateral;
 }

@@ -287,6 +287,28 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_config_t *conf
     return 0;
 }
 
+/* Progress of the running quarter, [0, 1]. */
+static float quarter_progress(const saddle_cycle_t *cycle, float x_m)
+{
+    const float quarter_m = cycle->quarter.length_m;
+    const float since_via_m = saddle_cycle_before_landing(cycle) ? x_m : quarter_m + x_m;
+    return saddle_clamp(since_via_m / quarter_m, 0.0f, 1.0f);
+}
+
+/* Progress of the swing under way: a quarter is half of it. */
+static float swing_progress(const saddle_cycle_t *cycle, float progress)
+{
+    return 0.5f * progress + (saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f);
+}
+
+static void swing_foot(const saddle_cycle_t *cycle, float x_m, saddle_sample_t reference,
+                       float progress, saddle_swing_state_t *foot)
+{
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    saddle_foot_swing(&cycle->swing, progress, x_m, reference, speed_m_s,
+                      0.5f * speed_m_s / cycle->quarter.length_m, foot);
+}
+
 /* Progress of the running swing through the air, in the quarter after a landing. */
 static float air_after_landing(const saddle_cycle_t *cycle, float x_m)
 {
@@ -337,10 +359,11 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
         !landing_usable(cycle, config, body, step_m, (saddle_vec2_t){x_m, lateral.value})) {
         return false;
     }
-    saddle_pose_t pose;
-    saddle_cycle_pose(cycle, config, body, &pose);
+    saddle_swing_state_t foot;
+    swing_foot(cycle, old_x_m, lateral_reference(cycle, old_x_m),
+               swing_progress(cycle, quarter_progress(cycle, old_x_m)), &foot);
     const saddle_sample_t vertical = vertical_at(cycle, config, body, old_x_m);
-    const saddle_vec2_t swing_m = {pose.swing.position_m.x - dx_m, pose.swing.position_m.y - dy_m};
+    const saddle_vec2_t swing_m = {foot.position_m.x - dx_m, foot.position_m.y - dy_m};
     cycle->position = saddle_position_from_m(x_m);
     cycle->quarter_length = saddle_position_from_m(length_m);
     cycle->origin_x_nm += (int64_t)(int32_t)(1.0e9f * dx_m);
@@ -410,6 +433,11 @@ static float swing_pitch_rad(const saddle_cycle_t *cycle, const saddle_config_t 
     return -landing_angle_rad(cycle, config, body) * saddle_min_jerk(2.0f * progress - 1.0f);
 }
 
+float saddle_cycle_com_y_m(const saddle_cycle_t *cycle)
+{
+    return lateral_at(cycle, saddle_position_to_m(cycle->position)).value;
+}
+
 void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config_t *config,
                        const saddle_body_t *body, saddle_pose_t *pose)
 {
@@ -419,9 +447,8 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config_t *confi
     const bool before = saddle_cycle_before_landing(cycle);
     const saddle_sample_t reference = lateral_reference(cycle, x_m);
     const saddle_sample_t lateral = sum(reference, saddle_blend_at(&cycle->lateral, x_m));
-    const float since_via_m = before ? x_m : quarter_m + x_m;
     const float to_saddle_m = before ? quarter_m - x_m : quarter_m + x_m;
-    pose->progress = saddle_clamp(since_via_m / quarter_m, 0.0f, 1.0f);
+    pose->progress = quarter_progress(cycle, x_m);
     pose->com_m.x = x_m;
     pose->com_m.y = lateral.value;
     pose->com_velocity_m_s.x = speed_m_s;
@@ -431,9 +458,8 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config_t *confi
     } else {
         erf_height(cycle, config, body, to_saddle_m, speed_m_s, pose);
     }
-    const float swing_progress = 0.5f * pose->progress + (before ? 0.5f : 0.0f);
-    saddle_foot_swing(&cycle->swing, swing_progress, x_m, reference, speed_m_s,
-                      0.5f * speed_m_s / quarter_m, &pose->swing);
+    const float progress = swing_progress(cycle, pose->progress);
+    swing_foot(cycle, x_m, reference, progress, &pose->swing);
     pose->stance_pitch_rad = before ? pose->ankle.toe_off_rad : -pose->ankle.heel_strike_rad;
-    pose->swing_pitch_rad = swing_pitch_rad(cycle, config, body, swing_progress);
+    pose->swing_pitch_rad = swing_pitch_rad(cycle, config, body, progress);
 }

@@ -323,9 +323,7 @@ static uint32_t advance_cycle(saddle_planner_t *planner, const saddle_config_t *
         }
     }
     if (arrived) {
-        saddle_pose_t pose;
-        saddle_cycle_pose(cycle, config, body, &pose);
-        after_last_swing(planner, config, body, pose.com_m.y);
+        after_last_swing(planner, config, body, saddle_cycle_com_y_m(cycle));
     }
     return rest_us;
 }
@@ -354,7 +352,8 @@ uint32_t saddle_planner_horizon_us(const saddle_planner_t *planner)
     const float step_m = saddle_cycle_before_landing(cycle) ? 2.0f : 3.0f;
     const float way_m = saddle_clamp(
         saddle_cycle_way_to_via_point_m(cycle) + step_m * cycle->quarter.length_m, 0.0f, WAY_MAX_M);
-    const float time_s = saddle_profile_time_s(&cycle->profile, way_m);
+    const saddle_pace_t pace = saddle_pace(&cycle->profile);
+    const float time_s = saddle_pace_time_s(&pace, way_m);
     return (uint32_t)(1.0e6f * saddle_clamp(time_s, 0.0f, HORIZON_MAX_S));
 }
 
@@ -462,9 +461,10 @@ static void write_step_events(const saddle_cycle_t *cycle, const saddle_config_t
     const float lead_m =
         config->cop_range_m * (1.0f - saddle_cos(cycle->next_heel_strike_rad));
     const float heel_m = landing_m > lead_m ? landing_m - lead_m : 0.0f;
-    plan->time_to_via_point_s = saddle_profile_time_s(&cycle->profile, way_m);
-    plan->time_to_toe_off_s = saddle_profile_time_s(&cycle->profile, landing_m);
-    plan->time_to_heel_strike_s = saddle_profile_time_s(&cycle->profile, heel_m);
+    const saddle_pace_t pace = saddle_pace(&cycle->profile);
+    plan->time_to_via_point_s = saddle_pace_time_s(&pace, way_m);
+    plan->time_to_toe_off_s = saddle_pace_time_s(&pace, landing_m);
+    plan->time_to_heel_strike_s = saddle_pace_time_s(&pace, heel_m);
 }
 
 static void write_events(const saddle_planner_t *planner, const saddle_config_t *config,

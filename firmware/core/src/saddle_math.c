@@ -57,28 +57,53 @@ static float cos_of_eighth(float r)
     return 1.0f - z * (0.5f - z * ((COS[2] * z + COS[1]) * z + COS[0]));
 }
 
-/** sin(x_rad + lead_quarters pi/2), x_rad reduced to its nearest quarter turn. */
-static float sin_with_lead(float x_rad, int32_t lead_quarters)
+/** An angle as its nearest quarter turn and what is left of it. */
+typedef struct {
+    uint32_t quarters;
+    float rest_rad;
+} turn_t;
+
+static turn_t turn_of(float x_rad)
 {
-    if (x_rad != x_rad || x_rad < -SADDLE_TWO_PI || x_rad > SADDLE_TWO_PI) {
+    if (!saddle_in_range(x_rad, -SADDLE_TWO_PI, SADDLE_TWO_PI)) {
         x_rad = 0.0f;
     }
     const int32_t quarters = (int32_t)(x_rad * TWO_OVER_PI + (x_rad < 0.0f ? -0.5f : 0.5f));
     const float q = (float)quarters;
-    const float r = (x_rad - q * HALF_PI_HI) - q * HALF_PI_LO;
-    const uint32_t quadrant = (uint32_t)(quarters + lead_quarters);
-    const float y = (quadrant & 1u) != 0u ? cos_of_eighth(r) : sin_of_eighth(r);
-    return (quadrant & 2u) != 0u ? -y : y;
+    return (turn_t){(uint32_t)quarters, (x_rad - q * HALF_PI_HI) - q * HALF_PI_LO};
+}
+
+/** y in the first two quarter turns, -y in the others. */
+static float signed_by(uint32_t quarters, float y)
+{
+    return (quarters & 2u) != 0u ? -y : y;
+}
+
+static float sin_of(uint32_t quarters, float r)
+{
+    return signed_by(quarters, (quarters & 1u) != 0u ? cos_of_eighth(r) : sin_of_eighth(r));
 }
 
 float saddle_sin(float x_rad)
 {
-    return sin_with_lead(x_rad, 0);
+    const turn_t turn = turn_of(x_rad);
+    return sin_of(turn.quarters, turn.rest_rad);
 }
 
 float saddle_cos(float x_rad)
 {
-    return sin_with_lead(x_rad, 1);
+    const turn_t turn = turn_of(x_rad);
+    return sin_of(turn.quarters + 1u, turn.rest_rad);
+}
+
+saddle_sin_cos_t saddle_sin_cos(float x_rad)
+{
+    const turn_t turn = turn_of(x_rad);
+    const float sine = sin_of_eighth(turn.rest_rad);
+    const float cosine = cos_of_eighth(turn.rest_rad);
+    const bool odd = (turn.quarters & 1u) != 0u;
+    return (saddle_sin_cos_t){signed_by(turn.quarters, odd ? cosine : sine),
+                              signed_by(turn.quarters + 1u, odd ? sine : cosine)};
 }
 
 float saddle_asin(float x)

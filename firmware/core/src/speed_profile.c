@@ -8,12 +8,6 @@
 /* A target that is not approached. */
 #define WAY_NEVER_M 1.0e9f
 
-/* Signed acceleration until the target is reached. */
-static float acceleration(const saddle_speed_profile_t *profile)
-{
-    return profile->target < profile->speed ? -profile->rate_m_s2 : profile->rate_m_s2;
-}
-
 saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t dt_us)
 {
     const float rate_m_s2 = saddle_clamp(profile->rate_m_s2, 0.0f, RATE_MAX_M_S2);
@@ -34,57 +28,65 @@ saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t 
 }
 
 /* Way on which the target is reached. */
-static float change_way_m(const saddle_speed_profile_t *profile, float speed_m_s, float target_m_s)
+static float change_way_m(const saddle_pace_t *pace)
 {
-    const float difference_m2_s2 = (target_m_s - speed_m_s) * (target_m_s + speed_m_s);
+    const float difference_m2_s2 =
+        (pace->target_m_s - pace->speed_m_s) * (pace->target_m_s + pace->speed_m_s);
     if (difference_m2_s2 == 0.0f) {
         return 0.0f;
     }
-    if (profile->rate_m_s2 <= 0.0f) {
+    if (pace->acceleration_m_s2 == 0.0f) {
         return WAY_NEVER_M;
     }
-    return saddle_magnitude(difference_m2_s2) / (2.0f * profile->rate_m_s2);
+    return difference_m2_s2 / (2.0f * pace->acceleration_m_s2);
 }
 
-static float speed_on_the_way_m_s(const saddle_speed_profile_t *profile, float speed_m_s,
-                                  float way_m)
+saddle_pace_t saddle_pace(const saddle_speed_profile_t *profile)
 {
-    const float square = speed_m_s * speed_m_s + 2.0f * acceleration(profile) * way_m;
+    saddle_pace_t pace;
+    pace.speed_m_s = saddle_speed_to_m_s(profile->speed);
+    pace.target_m_s = saddle_speed_to_m_s(profile->target);
+    pace.acceleration_m_s2 =
+        profile->target < profile->speed ? -profile->rate_m_s2 : profile->rate_m_s2;
+    pace.change_m = change_way_m(&pace);
+    return pace;
+}
+
+static float speed_on_the_way_m_s(const saddle_pace_t *pace, float way_m)
+{
+    const float square =
+        pace->speed_m_s * pace->speed_m_s + 2.0f * pace->acceleration_m_s2 * way_m;
     return square > 0.0f ? sqrtf(square) : 0.0f;
 }
 
 saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile, float way_m)
 {
-    const float speed_m_s = saddle_speed_to_m_s(profile->speed);
-    const float target_m_s = saddle_speed_to_m_s(profile->target);
-    if (way_m >= change_way_m(profile, speed_m_s, target_m_s)) {
+    const saddle_pace_t pace = saddle_pace(profile);
+    if (way_m >= pace.change_m) {
         return profile->target;
     }
-    const float sum_m_s = speed_m_s + speed_on_the_way_m_s(profile, speed_m_s, way_m);
+    const float sum_m_s = pace.speed_m_s + speed_on_the_way_m_s(&pace, way_m);
     if (sum_m_s <= 0.0f) {
         return 0;
     }
     /* The change alone is rounded: the steps' lengths follow from this speed and add up. */
-    const float change_m_s = 2.0f * acceleration(profile) * way_m / sum_m_s;
+    const float change_m_s = 2.0f * pace.acceleration_m_s2 * way_m / sum_m_s;
     return profile->speed + saddle_speed_from_m_s(change_m_s);
 }
 
-float saddle_profile_time_s(const saddle_speed_profile_t *profile, float way_m)
+float saddle_pace_time_s(const saddle_pace_t *pace, float way_m)
 {
-    const float speed_m_s = saddle_speed_to_m_s(profile->speed);
-    const float target_m_s = saddle_speed_to_m_s(profile->target);
-    const float change_m = change_way_m(profile, speed_m_s, target_m_s);
-    const float changing_m = way_m < change_m ? way_m : change_m;
-    const float mean_m_s =
-        0.5f * (speed_m_s + (way_m < change_m ? speed_on_the_way_m_s(profile, speed_m_s, way_m)
-                                              : target_m_s));
+    const bool changing = way_m < pace->change_m;
+    const float changing_m = changing ? way_m : pace->change_m;
+    const float then_m_s = changing ? speed_on_the_way_m_s(pace, way_m) : pace->target_m_s;
+    const float mean_m_s = 0.5f * (pace->speed_m_s + then_m_s);
     const float rest_m = way_m - changing_m;
     float time_s = 0.0f;
     if (changing_m > 0.0f) {
         time_s += mean_m_s > 0.0f ? changing_m / mean_m_s : SADDLE_TIME_MAX_S;
     }
     if (rest_m > 0.0f) {
-        time_s += target_m_s > 0.0f ? rest_m / target_m_s : SADDLE_TIME_MAX_S;
+        time_s += pace->target_m_s > 0.0f ? rest_m / pace->target_m_s : SADDLE_TIME_MAX_S;
     }
     return saddle_clamp(time_s, 0.0f, SADDLE_TIME_MAX_S);
 }

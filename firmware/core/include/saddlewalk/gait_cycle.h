@@ -75,6 +75,9 @@ bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);
 /** Way to the end of the running quarter. */
 float saddle_cycle_way_to_via_point_m(const saddle_cycle_t *cycle);
 
+/** The pose's com_m.y alone. */
+float saddle_cycle_com_y_m(const saddle_cycle_t *cycle);
+
 void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config_t *config,
                        const saddle_body_t *body, saddle_pose_t *pose);
 

@@ -19,7 +19,16 @@ saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t 
 /** The speed after a further way_m >= 0. */
 saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile, float way_m);
 
+/** A profile in floats, to foretell by. */
+typedef struct {
+    float speed_m_s, target_m_s;
+    float acceleration_m_s2; /**< signed, until the target is reached */
+    float change_m;          /**< way on which it is reached */
+} saddle_pace_t;
+
+saddle_pace_t saddle_pace(const saddle_speed_profile_t *profile);
+
 /** Seconds until a further way_m >= 0 is covered, at most SADDLE_TIME_MAX_S. */
-float saddle_profile_time_s(const saddle_speed_profile_t *profile, float way_m);
+float saddle_pace_time_s(const saddle_pace_t *pace, float way_m);
 
 #endif
