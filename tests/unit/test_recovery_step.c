@@ -26,6 +26,14 @@ void setUp(void)
 
 void tearDown(void) {}
 
+static saddle_recovery_t recovery_from(const saddle_catch_t *to_catch)
+{
+    saddle_recovery_t recovery;
+    memset(&recovery, 0xFF, sizeof recovery);
+    saddle_recovery_step(&config, &body, to_catch, &recovery);
+    return recovery;
+}
+
 /* ---- what the model page says of a landing ------------------------------------------------- */
 
 typedef struct {
@@ -118,7 +126,7 @@ static void test_planned_walk_lands_where_it_is_planned_at_every_speed(void)
         const saddle_catch_t left = planned_walk(v);
         const saddle_catch_t sides[] = {left, mirrored(left)};
         for (size_t i = 0; i < COUNT_OF(sides); i++) {
-            const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &sides[i]);
+            const saddle_recovery_t recovery = recovery_from(&sides[i]);
             TEST_ASSERT_TRUE(recovery.found);
             TEST_ASSERT_TRUE(recovery.margin_m > 0.0f);
             TEST_ASSERT_EQUAL_UINT8(saddle_other_side(sides[i].stance), recovery.foot);
@@ -137,7 +145,7 @@ static void test_fast_walk_has_the_model_page_s_reach_left(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.005, 0.97, reach());
     to_catch.landing_m.x = 0.0f;
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, free.min_x,
-                              saddle_recovery_step(&config, &body, &to_catch).landing_m.x);
+                              recovery_from(&to_catch).landing_m.x);
 }
 
 /* ---- one direction at a time --------------------------------------------------------------- */
@@ -153,7 +161,7 @@ static void test_xcom_that_runs_ahead_pulls_the_landing_to_the_end_of_the_reach(
     for (int mm = 0; mm < 1000; mm++) {
         to_catch.departure_m.x = 1e-3f * (float)mm;
         const double xcom = 0.6 + 1e-3 * mm;
-        const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &to_catch);
+        const saddle_recovery_t recovery = recovery_from(&to_catch);
         TEST_ASSERT_EQUAL(xcom - ahead <= reach(), recovery.found);
         if (recovery.found) {
             TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, fmax(0.6, xcom - ahead),
@@ -172,7 +180,7 @@ static void test_xcom_that_falls_behind_pulls_the_landing_back_to_the_end_of_the
     for (int mm = 0; mm < 2000; mm++) {
         to_catch.departure_m.x = -1e-3f * (float)mm;
         const double heel = 0.6 - 1e-3 * mm + 0.1; /* the XCoM over the heel of the new foot */
-        const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &to_catch);
+        const saddle_recovery_t recovery = recovery_from(&to_catch);
         TEST_ASSERT_EQUAL(heel >= -reach(), recovery.found);
         if (recovery.found) {
             TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, fmin(0.6, heel), recovery.landing_m.x);
@@ -195,7 +203,7 @@ static void test_xcom_that_goes_aside_widens_the_step_or_narrows_it(void)
         for (int mm = -600; mm < 600; mm++) {
             to_catch.departure_m.y = (float)(1e-3 * outward * mm);
             const double xcom = 0.06 + 1e-3 * mm;
-            const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &to_catch);
+            const saddle_recovery_t recovery = recovery_from(&to_catch);
             const bool reached = xcom <= 0.45 && xcom + stance_side >= 0.05;
             if (fabs(xcom - 0.45) > 1e-6 && fabs(xcom + stance_side - 0.05) > 1e-6) {
                 TEST_ASSERT_EQUAL(reached, recovery.found);
@@ -270,7 +278,7 @@ static void test_landing_is_the_nearest_place_of_all_that_catch(void)
         config.recovery_follow = (float)(i % 3) * 0.5f;
         config.recovery_margin_m = random_in(&state, -0.05f, 0.05f);
         const saddle_catch_t to_catch = random_catch(&state);
-        const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &to_catch);
+        const saddle_recovery_t recovery = recovery_from(&to_catch);
         const double outward = outward_of(to_catch.stance);
         const double follow = (double)config.recovery_follow;
         const double wanted_x =
@@ -299,7 +307,7 @@ static void test_margin_is_the_room_left_on_the_scarcer_axis(void)
     for (int i = 0; i < MANY(5000); i++) {
         const saddle_catch_t to_catch = random_catch(&state);
         const places_t free = places(&to_catch);
-        const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &to_catch);
+        const saddle_recovery_t recovery = recovery_from(&to_catch);
         const double room = fmin(free.max_x - free.min_x, free.max_y - free.min_y);
         TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, room, recovery.margin_m);
         TEST_ASSERT_EQUAL(recovery.margin_m >= 0.0f, recovery.found);
@@ -324,7 +332,7 @@ static void test_margin_is_continuous(void)
         for (int mm = 0; mm < 1500; mm++) {
             to_catch.departure_m.x = (float)(1e-3 * mm * cos(angle));
             to_catch.departure_m.y = (float)(1e-3 * mm * sin(angle));
-            const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &to_catch);
+            const saddle_recovery_t recovery = recovery_from(&to_catch);
             const double margin = (double)recovery.margin_m;
             if (mm > 0) {
                 TEST_ASSERT_DOUBLE_WITHIN(1e-3 + PLACE_TOLERANCE, before, margin);
@@ -353,7 +361,7 @@ static void test_landing_follows_the_departure_by_its_share(void)
     const float shares[] = {0.0f, 0.25f, 1.0f};
     for (size_t i = 0; i < COUNT_OF(shares); i++) {
         config.recovery_follow = shares[i];
-        const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &to_catch);
+        const saddle_recovery_t recovery = recovery_from(&to_catch);
         TEST_ASSERT_TRUE(recovery.found);
         TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, 0.5 + 0.08 * (double)shares[i],
                                   recovery.landing_m.x);
@@ -362,7 +370,7 @@ static void test_landing_follows_the_departure_by_its_share(void)
     }
     to_catch.departure_m.x = 0.55f; /* no further than it reaches */
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, reach(),
-                              saddle_recovery_step(&config, &body, &to_catch).landing_m.x);
+                              recovery_from(&to_catch).landing_m.x);
 }
 
 static void test_share_that_is_followed_changes_neither_margin_nor_decision(void)
@@ -371,9 +379,9 @@ static void test_share_that_is_followed_changes_neither_margin_nor_decision(void
     for (int i = 0; i < MANY(1000); i++) {
         const saddle_catch_t to_catch = random_catch(&state);
         config.recovery_follow = 0.0f;
-        const saddle_recovery_t nearest = saddle_recovery_step(&config, &body, &to_catch);
+        const saddle_recovery_t nearest = recovery_from(&to_catch);
         config.recovery_follow = 1.0f;
-        const saddle_recovery_t followed = saddle_recovery_step(&config, &body, &to_catch);
+        const saddle_recovery_t followed = recovery_from(&to_catch);
         TEST_ASSERT_EQUAL(nearest.found, followed.found);
         ASSERT_SAME_FLOAT(nearest.margin_m, followed.margin_m);
     }
@@ -389,7 +397,7 @@ static void test_margin_of_the_configuration_keeps_the_xcom_inside_the_foot(void
     for (size_t i = 0; i < COUNT_OF(margins); i++) {
         config.recovery_margin_m = margins[i];
         TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, 0.15 + (double)margins[i],
-                                  saddle_recovery_step(&config, &body, &to_catch).landing_m.y);
+                                  recovery_from(&to_catch).landing_m.y);
     }
 }
 
@@ -403,7 +411,7 @@ static void test_step_stops_where_the_xcom_lies_in_the_base_of_its_posture(void)
     for (int i = 0; i < MANY(5000); i++) {
         config.bos_factor = i % 2 == 0 ? 1.0f : 0.6f;
         const saddle_catch_t to_catch = random_catch(&state);
-        const saddle_recovery_t recovery = saddle_recovery_step(&config, &body, &to_catch);
+        const saddle_recovery_t recovery = recovery_from(&to_catch);
         if (!recovery.found) {
             continue;
         }

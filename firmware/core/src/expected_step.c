@@ -63,20 +63,8 @@ saddle_growth_t saddle_growth(const saddle_body_t *body, float time_s, bool trai
     return growth;
 }
 
-saddle_com_state_t saddle_grown(const saddle_body_t *body, const saddle_com_state_t *deviation,
-                                const saddle_growth_t *growth)
+float saddle_grown_m(float com_m, float xcom_m, const saddle_growth_t *growth)
 {
-    const float w = body->natural_frequency_rad_s;
-    const float inverse = 1.0f / growth->factor;
-    const float cosh_wt = 0.5f * (growth->factor + inverse);
-    const float sinh_wt = 0.5f * (growth->factor - inverse);
-    const saddle_vec2_t place_m = deviation->com_m;
-    const saddle_vec2_t velocity_m_s = deviation->velocity_m_s;
-    const saddle_com_state_t grown = {
-        .com_m = {place_m.x * cosh_wt + velocity_m_s.x / w * sinh_wt,
-                  place_m.y * cosh_wt + velocity_m_s.y / w * sinh_wt},
-        .velocity_m_s = {place_m.x * w * sinh_wt + velocity_m_s.x * cosh_wt,
-                         place_m.y * w * sinh_wt + velocity_m_s.y * cosh_wt},
-    };
-    return grown;
+    const float receding_m = 2.0f * com_m - xcom_m;
+    return 0.5f * (growth->factor * xcom_m + receding_m / growth->factor);
 }

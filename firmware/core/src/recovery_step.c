@@ -50,8 +50,8 @@ static bool stops_at(const saddle_config_t *config, saddle_vec2_t xcom_m, saddle
     return bos.defined && saddle_bos_margin_m(&bos, xcom_m) >= 0.0f;
 }
 
-saddle_recovery_t saddle_recovery_step(const saddle_config_t *config, const saddle_body_t *body,
-                                       const saddle_catch_t *to_catch)
+void saddle_recovery_step(const saddle_config_t *config, const saddle_body_t *body,
+                          const saddle_catch_t *to_catch, saddle_recovery_t *recovery)
 {
     const float outward = to_catch->stance == SADDLE_LEFT ? -1.0f : 1.0f;
     const saddle_vec2_t departure_m = to_catch->departure_m;
@@ -64,19 +64,17 @@ saddle_recovery_t saddle_recovery_step(const saddle_config_t *config, const sadd
     const interval_t y = across(config, body, to_catch, outward * xcom_m.y);
     const float room_x_m = x.max_m - x.min_m;
     const float room_y_m = y.max_m - y.min_m;
-    saddle_recovery_t recovery;
-    recovery.found = room_x_m >= 0.0f && room_y_m >= 0.0f;
-    recovery.stops = false;
-    recovery.landing_m.x = 0.0f;
-    recovery.landing_m.y = 0.0f;
-    recovery.foot = (uint8_t)saddle_other_side(to_catch->stance);
-    recovery.margin_m = room_x_m < room_y_m ? room_x_m : room_y_m;
-    if (recovery.found) {
-        recovery.landing_m.x = saddle_clamp(wanted_m.x, x.min_m, x.max_m);
-        recovery.landing_m.y = outward * saddle_clamp(outward * wanted_m.y, y.min_m, y.max_m);
-        recovery.stops = stops_at(config, xcom_m, recovery.landing_m);
+    recovery->found = room_x_m >= 0.0f && room_y_m >= 0.0f;
+    recovery->stops = false;
+    recovery->landing_m.x = 0.0f;
+    recovery->landing_m.y = 0.0f;
+    recovery->foot = (uint8_t)saddle_other_side(to_catch->stance);
+    recovery->margin_m = room_x_m < room_y_m ? room_x_m : room_y_m;
+    if (recovery->found) {
+        recovery->landing_m.x = saddle_clamp(wanted_m.x, x.min_m, x.max_m);
+        recovery->landing_m.y = outward * saddle_clamp(outward * wanted_m.y, y.min_m, y.max_m);
+        recovery->stops = stops_at(config, xcom_m, recovery->landing_m);
     }
-    return recovery;
 }
 
 float saddle_least_deviation_m(float deviation_m, saddle_cop_shift_t shift,

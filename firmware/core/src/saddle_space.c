@@ -77,7 +77,6 @@ float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m)
     const float centre_distance_m = length_m(x_m, y_m);
     const float to_arc_m = bos->radius_m - centre_distance_m;
     const float to_edge_m = bos->half_depth_m - x_m;
-    const float corner_y_m = edge_half_length_m(bos);
 
     if (to_edge_m >= 0.0f && to_arc_m >= 0.0f) {
         return to_arc_m < to_edge_m ? to_arc_m : to_edge_m;
@@ -85,10 +84,17 @@ float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m)
     if (x_m * bos->radius_m <= bos->half_depth_m * centre_distance_m) {
         return to_arc_m;
     }
+    const float corner_y_m = edge_half_length_m(bos);
     if (y_m <= corner_y_m) {
         return to_edge_m;
     }
     return -length_m(to_edge_m, y_m - corner_y_m);
+}
+
+static bool is_inside(const saddle_bos_t *bos, saddle_vec2_t place_m)
+{
+    return saddle_magnitude(place_m.x) <= bos->half_depth_m &&
+           place_m.x * place_m.x + place_m.y * place_m.y <= bos->radius_m * bos->radius_m;
 }
 
 /* How far the border is from an inner place along a unit direction, both in saddle space. */
@@ -112,11 +118,10 @@ static saddle_vec2_t nearest_border_m(const saddle_bos_t *bos, saddle_vec2_t pla
     const float distance_m = length_m(place_m.x, place_m.y);
     const float x_m = saddle_magnitude(place_m.x);
     const float y_m = saddle_magnitude(place_m.y);
-    const bool inside = x_m <= bos->half_depth_m && distance_m <= bos->radius_m;
     const bool arc_nearer = bos->radius_m - distance_m < bos->half_depth_m - x_m;
     const bool faces_arc = x_m * bos->radius_m <= bos->half_depth_m * distance_m;
     saddle_vec2_t border_m = {bos->half_depth_m, y_m < corner_y_m ? y_m : corner_y_m};
-    if (inside ? arc_nearer : faces_arc) {
+    if (is_inside(bos, place_m) ? arc_nearer : faces_arc) {
         const float stretch = distance_m > 0.0f ? bos->radius_m / distance_m : 0.0f;
         border_m.x = distance_m > 0.0f ? stretch * x_m : bos->radius_m;
         border_m.y = stretch * y_m;
@@ -135,7 +140,7 @@ saddle_vec2_t saddle_bos_exit_m(const saddle_bos_t *bos, saddle_vec2_t point_m,
     const saddle_vec2_t place_m =
         to_saddle(bos, point_m.x - bos->centre_m.x, point_m.y - bos->centre_m.y);
     const float speed_m_s = length_m(direction_m_s.x, direction_m_s.y);
-    if (speed_m_s < REST_M_S || saddle_bos_margin_m(bos, point_m) < 0.0f) {
+    if (speed_m_s < REST_M_S || !is_inside(bos, place_m)) {
         return to_task_m(bos, nearest_border_m(bos, place_m));
     }
     const saddle_vec2_t direction =

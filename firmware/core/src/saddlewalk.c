@@ -133,6 +133,16 @@ static void plan_walk(saddle_context_t *context, const saddle_input_t *input, ui
                                            &output->plan);
 }
 
+/* The measured posture against the plan. */
+static void supervise(saddle_context_t *context, const saddle_input_t *input, uint32_t faults,
+                      float dt_s, saddle_output_t *output)
+{
+    const saddle_intent_t intent = intent_of(&output->plan);
+    output->faults |= saddle_supervisor_update(
+        &context->supervisor, &context->config, &context->body, &input->measurement, faults, dt_s,
+        &intent, &output->scores, &output->verdict);
+}
+
 saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
                             saddle_output_t *output)
 {
@@ -155,10 +165,7 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     const bool stop = saddle_safe_state_update(&context->safe_state, &context->config,
                                                faults | output->faults, dt_s);
     plan_walk(context, input, faults, stop, dt_us, output);
-    const saddle_intent_t intent = intent_of(&output->plan);
-    output->faults |= saddle_supervisor_update(
-        &context->supervisor, &context->config, &context->body, &input->measurement, faults, dt_s,
-        &intent, &output->scores, &output->verdict);
+    supervise(context, input, faults, dt_s, output);
     return SADDLE_OK;
 }
 

@@ -145,25 +145,6 @@ static saddle_vec2_t xcom_of(const saddle_body_t *body, const saddle_com_state_t
     return saddle_xcom_m(state->com_m, state->velocity_m_s, body->natural_frequency_rad_s);
 }
 
-/* The measured posture from a point that the CoM is com_m away from. */
-typedef struct {
-    saddle_com_state_t com;
-    saddle_vec2_t cop_m[2];
-    saddle_bos_t bos;
-} seen_t;
-
-static seen_t seen_from(const saddle_config_t *config,
-                               const saddle_measurement_t *measurement, saddle_vec2_t com_m)
-{
-    seen_t seen;
-    seen.com.com_m = com_m;
-    seen.com.velocity_m_s = measurement->com.velocity_m_s;
-    seen.cop_m[SADDLE_LEFT] = plus(com_m, measurement->foot[SADDLE_LEFT].cop_m);
-    seen.cop_m[SADDLE_RIGHT] = plus(com_m, measurement->foot[SADDLE_RIGHT].cop_m);
-    seen.bos = saddle_bos(seen.cop_m, config->cop_range_m, config->bos_factor);
-    return seen;
-}
-
 static void compare_nothing(saddle_verdict_t *verdict)
 {
     const saddle_vec2_t zero_m = {0.0f, 0.0f};
@@ -182,14 +163,15 @@ static void compare_nothing(saddle_verdict_t *verdict)
 
 /* What any planned state says about the measured one. */
 static void compare_state(const saddle_config_t *config, const saddle_body_t *body,
-                          const seen_t *seen, const saddle_com_state_t *planned,
-                          saddle_verdict_t *verdict)
+                          const saddle_posture_t *posture, const saddle_scores_t *scores,
+                          const saddle_com_state_t *planned, saddle_verdict_t *verdict)
 {
-    const bool reached = saddle_excess_track_j(config, body, seen->cop_m, &seen->bos, &seen->com,
-                                               planned, &verdict->excess_track_j);
+    const saddle_com_state_t measured = {posture->com_m, posture->com_velocity_m_s};
+    const bool reached = saddle_excess_track_j(config, body, posture->cop_m, &scores->bos,
+                                               &measured, planned, &verdict->excess_track_j);
     verdict->compared = true;
     verdict->on_track = reached && saddle_ankle_work_j(config, body) >= verdict->excess_track_j;
-    verdict->xcom_deviation_m = less(xcom_of(body, &seen->com), xcom_of(body, planned));
+    verdict->xcom_deviation_m = less(scores->xcom_m, xcom_of(body, planned));
 }
 
 /* trailing_m: the other foot, from the stance foot. */
@@ -204,32 +186,31 @@ static saddle_vec2_t least_deviation_m(const saddle_config_t *config, saddle_vec
 }
 
 /* Both feet are to stand: no heel strike is expected, and the foot on the side to which the XCoM
- * departs can make a recovery step. */
+ * departs can make a recovery step. from_middle: the planned CoM, from midway between the feet. */
 static void compare_standing(const saddle_config_t *config, const saddle_body_t *body,
-                             const saddle_measurement_t *measurement,
-                             const saddle_com_state_t *planned, saddle_verdict_t *verdict)
+                             const saddle_posture_t *posture, const saddle_scores_t *scores,
+                             const saddle_com_state_t *from_middle, saddle_verdict_t *verdict)
 {
-    const saddle_vec2_t *cop_m[2] = {&measurement->foot[SADDLE_LEFT].cop_m,
-                                     &measurement->foot[SADDLE_RIGHT].cop_m};
-    const saddle_vec2_t to_com_m = {-0.5f * (cop_m[0]->x + cop_m[1]->x),
-                                    -0.5f * (cop_m[0]->y + cop_m[1]->y)};
-    const seen_t seen = seen_from(config, measurement, to_com_m);
-    compare_state(config, body, &seen, planned, verdict);
-    verdict->ebos_com_m = saddle_bos_margin_m(&seen.bos, seen.com.com_m);
-    verdict->ebos_xcom_m = saddle_bos_margin_m(&seen.bos, xcom_of(body, &seen.com));
+    const saddle_com_state_t planned = {plus(scores->bos.centre_m, from_middle->com_m),
+                                        from_middle->velocity_m_s};
+    compare_state(config, body, posture, scores, &planned, verdict);
+    verdict->ebos_com_m = scores->mos_com_m;
+    verdict->ebos_xcom_m = scores->mos_xcom_m;
 
     const saddle_growth_t growth = saddle_growth(body, config->foresight_s, false);
-    const saddle_vec2_t deviation_m = verdict->xcom_deviation_m;
-    const saddle_side_t foot = deviation_m.y > 0.0f ? SADDLE_LEFT : SADDLE_RIGHT;
-    const saddle_vec2_t stance_m = seen.cop_m[saddle_other_side(foot)];
+    const saddle_side_t foot =
+        verdict->xcom_deviation_m.y > 0.0f ? SADDLE_LEFT : SADDLE_RIGHT;
+    const saddle_side_t stance = saddle_other_side(foot);
+    const saddle_vec2_t from_stance_m = less(posture->cop_m[foot], posture->cop_m[stance]);
     const saddle_catch_t to_catch = {
-        .stance = saddle_other_side(foot),
-        .landing_m = less(seen.cop_m[foot], stance_m),
-        .xcom_m = less(xcom_of(body, planned), stance_m),
-        .departure_m = least_deviation_m(config, deviation_m, stance_m, &growth),
+        .stance = stance,
+        .landing_m = from_stance_m,
+        .xcom_m = less(xcom_of(body, &planned), posture->cop_m[stance]),
+        .departure_m =
+            least_deviation_m(config, verdict->xcom_deviation_m, from_stance_m, &growth),
         .step_time_s = config->foresight_s,
     };
-    verdict->recovery = saddle_recovery_step(config, body, &to_catch);
+    saddle_recovery_step(config, body, &to_catch, &verdict->recovery);
 }
 
 /* The step that a steady walk makes on the stance foot, after a step as the last one was. */
@@ -264,77 +245,78 @@ static bool on_planned_step(const saddle_step_tracker_t *steps,
     return intent->walking && (both || steps->stance == (uint8_t)intent->step.stance);
 }
 
+/* What the deviation now will have become when the foot lands: in the BoS expected there. */
+static void foretell(const saddle_config_t *config, const saddle_body_t *body,
+                     const saddle_expectation_t *expected, saddle_vec2_t deviation_m,
+                     const saddle_growth_t *growth, saddle_verdict_t *verdict)
+{
+    const saddle_vec2_t landed_m[2] = {{0.0f, 0.0f}, expected->landing_m};
+    const saddle_bos_t ebos = saddle_bos(landed_m, config->cop_range_m, config->bos_factor);
+    const saddle_vec2_t xcom_deviation_m = verdict->xcom_deviation_m;
+    const saddle_vec2_t grown_m = {saddle_grown_m(deviation_m.x, xcom_deviation_m.x, growth),
+                                   saddle_grown_m(deviation_m.y, xcom_deviation_m.y, growth)};
+    const saddle_vec2_t grown_xcom_m = {growth->factor * xcom_deviation_m.x,
+                                        growth->factor * xcom_deviation_m.y};
+    verdict->ebos_com_m = saddle_bos_margin_m(&ebos, plus(expected->landing.com_m, grown_m));
+    verdict->ebos_xcom_m =
+        saddle_bos_margin_m(&ebos, plus(xcom_of(body, &expected->landing), grown_xcom_m));
+}
+
+/* trailing: the foot that is to land still carries. */
 static void compare_walking(const saddle_config_t *config, const saddle_body_t *body,
-                            const saddle_measurement_t *measurement, saddle_side_t stance,
+                            const saddle_posture_t *posture, const saddle_scores_t *scores,
+                            saddle_side_t stance, bool trailing,
                             const saddle_expectation_t *expected, saddle_verdict_t *verdict)
 {
-    const saddle_vec2_t zero_m = {0.0f, 0.0f};
-    const saddle_vec2_t com_m = less(zero_m, measurement->foot[stance].cop_m);
-    const seen_t seen = seen_from(config, measurement, com_m);
-    compare_state(config, body, &seen, &expected->now, verdict);
-
-    const saddle_com_state_t deviation = {
-        less(com_m, expected->now.com_m),
-        less(seen.com.velocity_m_s, expected->now.velocity_m_s)};
-    const saddle_side_t foot = saddle_other_side(stance);
-    const saddle_growth_t growth =
-        saddle_growth(body, expected->time_s, measurement->foot[foot].contact);
-    const saddle_com_state_t grown = saddle_grown(body, &deviation, &growth);
-    const saddle_vec2_t landed_m[2] = {zero_m, expected->landing_m};
-    const saddle_bos_t ebos = saddle_bos(landed_m, config->cop_range_m, config->bos_factor);
-    const saddle_vec2_t planned_xcom_m = xcom_of(body, &expected->landing);
-    verdict->ebos_com_m =
-        saddle_bos_margin_m(&ebos, plus(expected->landing.com_m, grown.com_m));
-    verdict->ebos_xcom_m = saddle_bos_margin_m(&ebos, plus(planned_xcom_m, xcom_of(body, &grown)));
-
+    const saddle_vec2_t stance_m = posture->cop_m[stance];
+    const saddle_vec2_t trailing_m = less(posture->cop_m[saddle_other_side(stance)], stance_m);
+    const saddle_com_state_t planned = {plus(stance_m, expected->now.com_m),
+                                        expected->now.velocity_m_s};
+    const saddle_growth_t growth = saddle_growth(body, expected->time_s, trailing);
+    compare_state(config, body, posture, scores, &planned, verdict);
+    foretell(config, body, expected, less(posture->com_m, planned.com_m), &growth, verdict);
     const saddle_catch_t to_catch = {
         .stance = stance,
         .landing_m = expected->landing_m,
-        .xcom_m = planned_xcom_m,
-        .departure_m = least_deviation_m(config, verdict->xcom_deviation_m, seen.cop_m[foot],
-                                         &growth),
+        .xcom_m = xcom_of(body, &expected->landing),
+        .departure_m =
+            least_deviation_m(config, verdict->xcom_deviation_m, trailing_m, &growth),
         .step_time_s = expected->step_time_s,
     };
-    verdict->recovery = saddle_recovery_step(config, body, &to_catch);
+    saddle_recovery_step(config, body, &to_catch, &verdict->recovery);
 }
 
-/* A walk without a plan for its step: at a speed, in the phase in which the CoM is. */
-static bool compare_usual(const saddle_config_t *config, const saddle_body_t *body,
-                          const saddle_step_tracker_t *steps,
-                          const saddle_measurement_t *measurement, float speed_m_s,
-                          saddle_verdict_t *verdict)
+/* The step that is compared: the planned one, or one at speed_m_s, in the phase where the CoM is. */
+static void compare_step(const saddle_config_t *config, const saddle_body_t *body,
+                         const saddle_measurement_t *measurement,
+                         const saddle_posture_t *posture, const saddle_scores_t *scores,
+                         const saddle_step_t *step, float x_m, saddle_verdict_t *verdict)
 {
-    if (!saddle_in_range(speed_m_s, SPEED_MIN_M_S, SPEED_MAX_M_S)) {
-        return false;
-    }
-    const saddle_step_t step = usual_step(config, steps, speed_m_s);
-    const saddle_expectation_t expected =
-        saddle_expect(config, &step, -measurement->foot[step.stance].cop_m.x);
-    compare_walking(config, body, measurement, step.stance, &expected, verdict);
-    return true;
+    const saddle_expectation_t expected = saddle_expect(config, step, x_m);
+    const bool trailing = measurement->foot[saddle_other_side(step->stance)].contact;
+    compare_walking(config, body, posture, scores, step->stance, trailing, &expected, verdict);
 }
 
-/* Against what is planned; without a command, against the walk of the last step or standing.
- * Whether it is a walk. */
-static bool compare(const saddle_config_t *config, const saddle_body_t *body,
+/* Against what is planned; without a command, against the walk of the last step or standing. */
+static void compare(const saddle_config_t *config, const saddle_body_t *body,
                     const saddle_step_tracker_t *steps, const saddle_measurement_t *measurement,
+                    const saddle_posture_t *posture, const saddle_scores_t *scores,
                     const saddle_intent_t *intent, saddle_verdict_t *verdict)
 {
     if (on_planned_step(steps, measurement, intent)) {
-        const saddle_expectation_t expected =
-            saddle_expect(config, &intent->step, intent->com.com_m.x);
-        compare_walking(config, body, measurement, intent->step.stance, &expected, verdict);
-        return true;
+        compare_step(config, body, measurement, posture, scores, &intent->step,
+                     intent->com.com_m.x, verdict);
+        return;
     }
     const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
     const float speed_m_s = intent->leads ? intent->step.speed_m_s : steps->v_comp_m_s;
-    if (walks) {
-        return compare_usual(config, body, steps, measurement, speed_m_s, verdict);
+    if (walks && saddle_in_range(speed_m_s, SPEED_MIN_M_S, SPEED_MAX_M_S)) {
+        const saddle_step_t step = usual_step(config, steps, speed_m_s);
+        compare_step(config, body, measurement, posture, scores, &step,
+                     posture->com_m.x - posture->cop_m[step.stance].x, verdict);
+    } else if (!walks && (intent->leads || steps->stands)) {
+        compare_standing(config, body, posture, scores, &intent->com, verdict);
     }
-    if (intent->leads || steps->stands) {
-        compare_standing(config, body, measurement, &intent->com, verdict);
-    }
-    return false;
 }
 
 /* A score that a walk is judged by and that is too low. */
@@ -369,7 +351,7 @@ static saddle_reason_t departure(const saddle_config_t *config, const saddle_ver
 }
 
 static saddle_reason_t reason_of(const saddle_config_t *config, uint32_t faults,
-                                 bool walks, const saddle_scores_t *scores,
+                                 const saddle_scores_t *scores,
                                  const saddle_verdict_t *verdict)
 {
     const uint32_t unusable = SADDLE_FAULTS_COM | SADDLE_FAULTS_FEET |
@@ -384,8 +366,7 @@ static saddle_reason_t reason_of(const saddle_config_t *config, uint32_t faults,
     if (!stays && !verdict->recovery.found) {
         return SADDLE_REASON_NO_STEP;
     }
-    const saddle_reason_t low =
-        walks ? low_score(config, faults, scores) : SADDLE_REASON_NONE;
+    const saddle_reason_t low = low_score(config, faults, scores);
     return low != SADDLE_REASON_NONE ? low : departure(config, verdict);
 }
 
@@ -471,7 +452,9 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     saddle_track_steps(steps, config, measurement, faults, dt_s);
     const bool feet_known = (faults & SADDLE_FAULTS_FEET) == 0u;
     const bool com_known = (faults & SADDLE_FAULTS_COM) == 0u;
-    const bool speed_known = steps->v_comp_known || intent->step.speed_m_s > 0.0f;
+    const bool is_to_stand = intent->leads && !intent->walking;
+    const bool speed_known = !is_to_stand && (steps->v_comp_known || intent->step.speed_m_s > 0.0f);
+    const bool half_step_known = !is_to_stand && steps->half_step_known;
     saddle_posture_t posture;
     posture.com_m.x = 0.0f;
     posture.com_m.y = 0.0f;
@@ -483,13 +466,14 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     posture.known = (feet_known ? (uint32_t)SADDLE_KNOWN_FEET : 0u) |
                     (com_known ? (uint32_t)SADDLE_KNOWN_VELOCITY : 0u) |
                     (speed_known ? (uint32_t)SADDLE_KNOWN_SPEED : 0u) |
-                    (steps->half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u);
+                    (half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u);
     saddle_score_posture(config, body, &posture, scores);
     const uint32_t all_faults = faults | judge_scores(posture.known, scores);
     compare_nothing(verdict);
-    const bool walks = com_known && feet_known && scores->bos.defined &&
-                       compare(config, body, steps, measurement, intent, verdict);
-    announce(supervisor, config, reason_of(config, all_faults, walks, scores, verdict));
+    if (com_known && feet_known && scores->bos.defined) {
+        compare(config, body, steps, measurement, &posture, scores, intent, verdict);
+    }
+    announce(supervisor, config, reason_of(config, all_faults, scores, verdict));
     verdict->level = supervisor->level;
     verdict->reason = supervisor->reason;
     return all_faults;

@@ -41,8 +41,8 @@ typedef struct {
 /** [E29] trailing: the other foot still carries, for about 0.1 s more. */
 saddle_growth_t saddle_growth(const saddle_body_t *body, float time_s, bool trailing);
 
-/** [E29] A deviation after free fall about the CoP. */
-saddle_com_state_t saddle_grown(const saddle_body_t *body, const saddle_com_state_t *deviation,
-                                const saddle_growth_t *growth);
+/** [E29] What a deviation of the CoM along one axis, with that of the XCoM, has grown to after free
+ *  fall about the CoP; the XCoM's own grows by growth->factor. */
+float saddle_grown_m(float com_m, float xcom_m, const saddle_growth_t *growth);
 
 #endif

@@ -27,8 +27,8 @@ typedef struct {
     float step_time_s;       /**< of the steps after it */
 } saddle_catch_t;
 
-saddle_recovery_t saddle_recovery_step(const saddle_config_t *config, const saddle_body_t *body,
-                                       const saddle_catch_t *to_catch);
+void saddle_recovery_step(const saddle_config_t *config, const saddle_body_t *body,
+                          const saddle_catch_t *to_catch, saddle_recovery_t *recovery);
 
 /** How far the wearer can move the CoP from where it is planned, along one axis. */
 typedef struct {

@@ -120,8 +120,9 @@ typedef struct {
 void saddle_score_posture(const saddle_config_t *config, const saddle_body_t *body,
                           const saddle_posture_t *posture, saddle_scores_t *scores);
 
-/** Follow the steps, score the posture in the frame of the CoM and give the verdict. faults: what
- *  saddle_judge() said. Returns the faults and those of the scores. */
+/** Follow the steps, score the posture in the frame of the CoM and give the verdict. While a plan has
+ *  both feet stand there is no walk to score: v_comp_m_s, the step scores and s_sw are not valid.
+ *  faults: what saddle_judge() said. Returns the faults and those of the scores. */
 uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_config_t *config,
                                   const saddle_body_t *body,
                                   const saddle_measurement_t *measurement, uint32_t faults,
