@@ -3,13 +3,16 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets samples neighbours format clean help
+.PHONY: build demo controller test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets samples neighbours format clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
 
 demo: build ## one walk, end to end: live in the terminal, results in out/demo
 	@$(BIN)/saddlewalk demo --out out/demo
+
+controller: build-cortex-m4f/build.ninja ## the image for saddlewalk demo --firmware qemu-m4
+	@$(BIN)/ninja -C build-cortex-m4f --quiet saddlewalk-controller
 
 test: build/build.ninja .venv/installed-test ## every test that this machine can run in minutes
 	$(call run_tests,build,release)
@@ -71,6 +74,7 @@ help: ## this list
 build/build.ninja: PRESET := release
 build-clang/build.ninja: PRESET := clang
 build-sanitize/build.ninja: PRESET := sanitize
+build-cortex-m4f/build.ninja: PRESET := cortex-m4f
 %/build.ninja: .venv/installed-build CMakePresets.json
 	@echo "Configuring $*"
 	@$(BIN)/cmake --preset $(PRESET) --fresh --log-level=WARNING

@@ -33,6 +33,9 @@ REFRESH_S = 0.2
 LINE_S = 2.0
 LISTEN_S = 0.25
 LATE_SHARE_MAX = 0.05
+Check = tuple[bool, str]  # good, and in words
+
+HOST, EMULATED = "host", "qemu-m4"
 
 
 def add_parser(subparsers: Any) -> None:
@@ -44,43 +47,89 @@ def add_parser(subparsers: Any) -> None:
         metavar="FOLDER",
         help="for the picture and the logs (default out/demo)",
     )
+    parser.add_argument(
+        "--firmware",
+        choices=(HOST, EMULATED),
+        default=HOST,
+        help="the process saddlewalk-host, or a Cortex-M4F in QEMU, which has no LCM and walks in "
+        "lockstep (default host)",
+    )
     add_walk_options(
         parser,
         pace=", ".join(f"{speed_m_s:g} m/s from {from_s:g} s" for from_s, speed_m_s in SPEEDS),
         duration_s=DURATION_S,
         push=f"{PUSH_N_S_KG:.3f} N s/kg to the left at {PUSH_TIME_S} s",
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, clock=None)
 
 
 def run(args: argparse.Namespace) -> int:
     config = load_config(args)
     if args.push is None and args.duration > PUSH_TIME_S:
         args.push = [(PUSH_N_S_KG * config.body_mass_kg, PUSH_TIME_S, PUSH_DIRECTION_DEG)]
+    args.clock = _clock(args)
     lcm = _open_lcm(args.lcm)
-    from saddlewalk.bus import describe, open_bus
+    from saddlewalk.bus import describe
     from saddlewalk.emulator import Noise
     from saddlewalk.exoskeleton import Exoskeleton
-    from saddlewalk.host import running_host
-    from saddlewalk.recorder import Recorder
     from saddlewalk.schedule import schedule_of
 
     wearer = wearer_of(args, config, Noise())
-    speeds = speeds_of(args, SPEEDS)
-    host_options = [f"--can={args.can}", f"--clock={args.clock}", *host_arguments(config)]
-    host_options += [f"--lcm={args.lcm}"] if args.lcm else []
+    schedule = schedule_of(speeds_of(args, SPEEDS), math.radians(args.hs_angle))
+    firmware = _host if args.firmware == HOST else _controller
+    with firmware(args, config, lcm) as (bus, recorder), _display(args, lcm) as display:
+        print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
+        observers = [recorder, events_printer(wearer), display]
+        exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers)
+        exoskeleton.run(args.clock, args.duration)
+    checks = _checks(wearer, exoskeleton, recorder)
+    if schedule(args.duration).speed_m_s == 0:
+        checks.insert(1, _standing(exoskeleton))
+    checks += _log_checks(args, recorder, config)
+    return _finish(_draw(args.out, recorder, wearer, config), wearer, exoskeleton, recorder, checks)
+
+
+def _clock(args: argparse.Namespace) -> str:
+    """What was asked for, or what the firmware walks by; a controller only knows lockstep here."""
+    if args.firmware == HOST:
+        return args.clock or "realtime"
+    for option, value, default in (("clock", args.clock, "lockstep"), ("can", args.can, "auto")):
+        if value not in (None, default):
+            raise UserError(
+                f"--{option} {value}: not with --firmware {args.firmware}, leave it out"
+            )
+    return "lockstep"
+
+
+@contextlib.contextmanager
+def _host(args: argparse.Namespace, config: Any, lcm: Any) -> "Iterator[tuple[Any, Recorder]]":
+    """The bus of a new host process, and what is recorded of it from its first word on."""
+    from saddlewalk.bus import open_bus
+    from saddlewalk.host import running_host
+    from saddlewalk.recorder import Recorder
+
+    options = [f"--can={args.can}", f"--clock={args.clock}", *host_arguments(config)]
+    options += [f"--lcm={args.lcm}"] if args.lcm else []
     with open_bus(args.can) as bus:
         _refuse_company(bus, lcm)
-        with Recorder(args.out, lcm) as recorder, running_host(*host_options):
-            print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
-            with _display(lcm) as display:
-                observers = [recorder, events_printer(wearer), display]
-                schedule = schedule_of(speeds, math.radians(args.hs_angle))
-                exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers)
-                exoskeleton.run(args.clock, args.duration)
-    to_stand = schedule(args.duration).speed_m_s == 0
-    picture = _draw(args.out, recorder, wearer, config)
-    return _finish(picture, wearer, exoskeleton, recorder, to_stand)
+        with Recorder(args.out, lcm) as recorder, running_host(*options):
+            yield bus, recorder
+
+
+@contextlib.contextmanager
+def _controller(
+    args: argparse.Namespace, config: Any, lcm: Any
+) -> "Iterator[tuple[Any, Recorder]]":
+    """The same of an emulated controller."""
+    from saddlewalk.qemu import running_controller
+    from saddlewalk.recorder import Recorder
+
+    with running_controller(config) as controller:
+        _refuse_company(controller.bus, lcm)
+        with Recorder(args.out, lcm) as recorder:
+            print("LCM: only of the wearer, a controller has none")
+            yield controller.bus, recorder
+    print(f"controller: {controller.words}")
 
 
 def _open_lcm(url: str | None) -> Any:
@@ -114,13 +163,16 @@ def _refuse_company(bus: Any, lcm: Any) -> None:
 
 
 @contextlib.contextmanager
-def _display(lcm: Any) -> Iterator[Any]:
+def _display(args: argparse.Namespace, lcm: Any) -> Iterator[Any]:
     """An observer that shows what the firmware publishes: a live panel, or a line now and then."""
     from rich.live import Live
 
     from saddlewalk.commands.monitor import Listener
     from saddlewalk.exoskeleton import Observer
 
+    if args.firmware == EMULATED:
+        yield Observer()
+        return
     listener = Listener()
     listener.subscribe(lcm)
     on_terminal = sys.stdout.isatty()
@@ -155,12 +207,9 @@ def _finish(
     wearer: "Wearer",
     exoskeleton: "Exoskeleton",
     recorder: "Recorder",
-    to_stand: bool,
+    checks: list[Check],
 ) -> int:
-    """Read everything again, tell; 0 only if the walk was sound."""
-    checks = _checks(wearer, exoskeleton, recorder)
-    if to_stand:
-        checks.insert(1, _standing(exoskeleton))
+    """Tell; 0 only if the walk was sound."""
     print(summary(wearer, exoskeleton))
     print(level_times(recorder))
     for good, words in checks:
@@ -179,7 +228,7 @@ def level_times(recorder: "Recorder") -> str:
     return "level: " + ", ".join(f"{name} {ticks * TICK_S:.1f} s" for name, ticks in told)
 
 
-def _standing(exoskeleton: "Exoskeleton") -> tuple[bool, str]:
+def _standing(exoskeleton: "Exoskeleton") -> Check:
     from saddlewalk.emulator import MODES, STANDING
 
     if exoskeleton.mode == STANDING:
@@ -188,18 +237,14 @@ def _standing(exoskeleton: "Exoskeleton") -> tuple[bool, str]:
     return False, f"is {last} at the end, not standing"
 
 
-def _checks(
-    wearer: "Wearer", exoskeleton: "Exoskeleton", recorder: "Recorder"
-) -> list[tuple[bool, str]]:
-    from saddlewalk.recorder import CHANNELS, read_can_log, read_lcm_log
+def _checks(wearer: "Wearer", exoskeleton: "Exoskeleton", recorder: "Recorder") -> list[Check]:
+    from saddlewalk.recorder import read_can_log
 
     health = exoskeleton.health
     late, refused = int(health["LATE_TICKS"]), int(health["REJECTED_FRAMES"])
     rejected = exoskeleton.reader.receiver.rejected
     ticks = exoskeleton.ticks
     frames = read_can_log(recorder.can_path)
-    channels = read_lcm_log(recorder.lcm_path)
-    missing = [name for name in CHANNELS if not channels[name]]
     return [
         (not wearer.fallen, "the wearer stayed up" if not wearer.fallen else "the wearer fell"),
         (
@@ -209,22 +254,38 @@ def _checks(
         (late <= LATE_SHARE_MAX * ticks, f"{late} of {ticks} ticks late"),
         (recorder.rows == ticks > 0, f"{recorder.rows} rows of CSV"),
         (frames == recorder.frames > 0, f"{frames} CAN frames read again"),
+    ]
+
+
+def _log_checks(args: argparse.Namespace, recorder: "Recorder", config: Any) -> list[Check]:
+    """What LCM brought, and the firmware's walk computed again from the log that has its inputs."""
+    from saddlewalk.recorder import CHANNELS, read_lcm_log
+
+    emulated = args.firmware == EMULATED
+    channels = read_lcm_log(recorder.lcm_path)
+    expected = ["SADDLEWALK_TRUTH"] if emulated else CHANNELS
+    missing = [name for name in expected if not channels[name]]
+    return [
         (
             sum(channels.values()) == recorder.lcm_messages and not missing,
             f"{sum(channels.values())} LCM messages read again"
             + (f", none on {', '.join(missing)}" if missing else ""),
         ),
-        _rerun(recorder.lcm_path),
+        _rerun(recorder.can_path if emulated else recorder.lcm_path, config),
     ]
 
 
-def _rerun(log: Path) -> tuple[bool, str]:
-    """Whether the logged inputs give the logged outputs again; what LCM lost is only told."""
-    from saddlewalk.logs import load_lcm_log
+def _rerun(log: Path, config: Any) -> Check:
+    """Whether the logged inputs give the logged outputs again; what a log lost is only told."""
+    from saddlewalk.logs import is_lcm_log, load_can_log, load_lcm_log
     from saddlewalk.rerun import rerun_lcm
+    from saddlewalk.rerun_can import rerun_can
 
     try:
-        report = rerun_lcm(load_lcm_log(log).records)
+        if is_lcm_log(log):
+            report = rerun_lcm(load_lcm_log(log).records)
+        else:
+            report = rerun_can(load_can_log(log).records, config)
     except UserError as error:
         return False, f"{log} cannot be rerun: {error}"
     if report.first:

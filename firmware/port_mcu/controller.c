@@ -1,0 +1,97 @@
+#include "controller.h"
+
+#include "board.h"
+#include <string.h>
+
+/** The time of the next tick in lockstep. */
+static uint64_t lockstep_us(const saddle_controller_t *controller)
+{
+    return (uint64_t)controller->timing.ticks * SADDLE_TICK_US;
+}
+
+static uint64_t now_us(const saddle_controller_t *controller)
+{
+    return controller->lockstep ? lockstep_us(controller) : saddle_clock_now_us();
+}
+
+static bool is_lockstep_due(const saddle_controller_t *controller)
+{
+    return controller->lockstep && saddle_inbox_set_complete(&controller->inbox);
+}
+
+/** At most what the queue holds, so that a flood cannot hold up a tick; in lockstep, no more once
+ *  a set of measurements is complete. */
+static void take_frames(saddle_controller_t *controller)
+{
+    saddle_can_frame_t frame;
+    for (uint32_t i = 0; i < SADDLE_CAN_QUEUE && !is_lockstep_due(controller) &&
+                         saddle_can_receive(&frame);
+         ++i) {
+        saddle_inbox_take_frame(&controller->inbox, frame.id, frame.data, frame.length,
+                                controller->lockstep ? lockstep_us(controller) : frame.came_us);
+    }
+}
+
+/** If a tick is due: for what time. One whose place has passed is missed, not made up for. */
+static bool is_due(saddle_controller_t *controller, uint64_t *due_us)
+{
+    if (controller->lockstep) {
+        *due_us = lockstep_us(controller);
+        return is_lockstep_due(controller);
+    }
+    const uint32_t ticks_due = saddle_clock_ticks_due();
+    const uint32_t come = ticks_due - controller->ticks_due;
+    if (come == 0u) {
+        return false;
+    }
+    controller->timing.missed_ticks += come - 1u;
+    controller->ticks_due = ticks_due;
+    *due_us = (uint64_t)ticks_due * SADDLE_TICK_US;
+    return true;
+}
+
+static void send_output(saddle_controller_t *controller, const saddle_output_t *output)
+{
+    saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
+    saddle_wire_health_t health = saddle_health(&controller->timing, &controller->inbox);
+    health.rejected_frames += saddle_can_lost();
+    saddle_wire_encode_output(output, &health, (uint8_t)controller->timing.ticks, frames);
+    for (size_t i = 0; i < SADDLE_WIRE_OUTPUT_FRAMES; ++i) {
+        saddle_can_frame_t frame = {.id = frames[i].id, .length = SADDLE_WIRE_LENGTH};
+        memcpy(frame.data, frames[i].data, sizeof frame.data);
+        controller->not_sent += !saddle_can_send(&frame);
+    }
+}
+
+/** Only a tick that worked and is done before the next is due speaks for the controller. */
+static void tick(saddle_controller_t *controller, uint64_t due_us)
+{
+    saddle_output_t output;
+    const uint64_t next_us = due_us + SADDLE_TICK_US;
+    saddle_timing_begin(&controller->timing, due_us, now_us(controller));
+    const saddle_input_t *input = saddle_inbox_read(&controller->inbox, due_us);
+    const saddle_status_t status = saddle_tick(&controller->context, input, &output);
+    send_output(controller, &output);
+    const uint64_t done_us = now_us(controller);
+    saddle_timing_end(&controller->timing, next_us, done_us);
+    if (status == SADDLE_OK && done_us <= next_us) {
+        saddle_watchdog_kick();
+    }
+}
+
+saddle_status_t saddle_controller_init(saddle_controller_t *controller,
+                                       const saddle_config_t *config, bool lockstep)
+{
+    *controller = (saddle_controller_t){.lockstep = lockstep};
+    saddle_inbox_init(&controller->inbox, SADDLE_SOURCE_CAN);
+    return saddle_init(&controller->context, config);
+}
+
+void saddle_controller_step(saddle_controller_t *controller)
+{
+    uint64_t due_us;
+    take_frames(controller);
+    if (is_due(controller, &due_us)) {
+        tick(controller, due_us);
+    }
+}

@@ -1,0 +1,74 @@
+#include "mps2.h"
+
+#define NVIC_ENABLE (*(volatile uint32_t *)0xE000E100u)
+
+extern char __stack[]; /* the linker's */
+void _start(void);     /* the C library's */
+
+static volatile bool woken;
+
+static void hang(void)
+{
+    for (;;) { /* nothing can be trusted any more: the watchdog resets the controller */
+    }
+}
+
+static void on_timer(void)
+{
+    woken = true;
+    mps2_timer_came_round();
+}
+
+static void on_uart_received(void)
+{
+    woken = true;
+    mps2_uart_received();
+}
+
+typedef void (*handler_t)(void);
+
+/** What the processor reads at address 0. */
+typedef struct {
+    const void *stack;
+    handler_t reset;
+    handler_t faults[14]; /* the watchdog's first warning among them, as an NMI */
+    handler_t interrupts[MPS2_INTERRUPTS];
+} vectors_t;
+
+extern const vectors_t __interrupt_vector; /* so the C library calls it */
+const vectors_t __interrupt_vector __attribute__((section(".data.init.enter"), used)) = {
+    .stack = __stack,
+    .reset = _start,
+    .faults = {hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang},
+    .interrupts = {[MPS2_UART_RECEIVED] = on_uart_received,
+                   [MPS2_UART_SENT] = mps2_uart_sent,
+                   [MPS2_TIMER] = on_timer},
+};
+
+void mps2_interrupt_enable(uint32_t number)
+{
+    NVIC_ENABLE = 1u << number;
+}
+
+uint32_t mps2_interrupts_hold(void)
+{
+    uint32_t held;
+    __asm volatile("mrs %0, primask\n cpsid i" : "=r"(held) : : "memory");
+    return held;
+}
+
+void mps2_interrupts_restore(uint32_t held)
+{
+    __asm volatile("msr primask, %0" : : "r"(held) : "memory");
+}
+
+/** An interrupt that is held back ends the sleep too, so none is slept through. */
+void mps2_sleep(void)
+{
+    const uint32_t held = mps2_interrupts_hold();
+    if (!woken) {
+        __asm volatile("wfi" : : : "memory");
+    }
+    woken = false;
+    mps2_interrupts_restore(held);
+}

@@ -1,0 +1,61 @@
+/** A controller on the MPS2 board. Started by QEMU with a serial line to an emulated wearer; when
+ *  the wearer leaves, it tells through semihosting how it fared. Exit status 1: nothing could run. */
+#include "controller.h"
+#include "mps2.h"
+#include "settings.h"
+#include "stack_paint.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+#define SETTINGS ((const uint32_t *)0x003FF000u) /* the last page of the flash */
+
+extern uint32_t __stack[];   /* the linker's: the stack's top */
+extern char __stack_size[]; /* this one's address is the number of its bytes */
+
+static saddle_controller_t controller;
+
+static uint32_t *stack_lowest(void)
+{
+    return __stack - (uintptr_t)__stack_size / sizeof __stack[0];
+}
+
+static void run(void)
+{
+    mps2_can_start();
+    mps2_clock_start();
+    if (!controller.lockstep) { /* there nobody knows when the next tick is due */
+        mps2_watchdog_start();
+    }
+    while (!mps2_can_closed()) {
+        saddle_controller_step(&controller);
+        mps2_sleep();
+    }
+}
+
+static void report(void)
+{
+    const uint32_t used = saddle_stack_used(stack_lowest(), __stack);
+    printf("%" PRIu32 " ticks, %" PRIu32 " late, %" PRIu32 " missed; frames: %" PRIu32
+           " lost, %" PRIu32 " not sent; stack: %" PRIu32 " of %" PRIu32 " bytes\n",
+           controller.timing.ticks, controller.timing.late_ticks, controller.timing.missed_ticks,
+           saddle_can_lost(), controller.not_sent, used, (uint32_t)(uintptr_t)__stack_size);
+}
+
+int main(void)
+{
+    saddle_config_t config = saddle_config_default(1.79f, 63.3f);
+    bool lockstep = false;
+    saddle_stack_paint(stack_lowest(), __builtin_frame_address(0));
+    saddle_settings_read(SETTINGS, &config, &lockstep);
+    const saddle_status_t status = saddle_controller_init(&controller, &config, lockstep);
+    if (status != SADDLE_OK) {
+        const char *bad_field = saddle_config_check(&config);
+        printf("saddle_init: status %d, %s\n", (int)status,
+               bad_field != NULL ? bad_field : "see saddle_status_t");
+        return 1;
+    }
+    run();
+    report();
+    return 0;
+}

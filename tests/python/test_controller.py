@@ -1,0 +1,199 @@
+"""The firmware on an emulated controller, `firmware/port_mcu`, and the line that leads to it."""
+
+import itertools
+import math
+import re
+import socket
+import statistics
+import subprocess
+import time
+from pathlib import Path
+
+import can
+import pytest
+
+from host_node import STANDING, WALK, own_lcm
+from saddlewalk import qemu
+from saddlewalk.bus import private_udp
+from saddlewalk.cli import main
+from saddlewalk.config import configuration
+from saddlewalk.errors import UserError
+from saddlewalk.slcan import SlcanBus, frame_of, text_of
+from saddlewalk.ticks import TICK_S, TickReader, next_tick
+from saddlewalk.wire import FRAME_LENGTH, Sender, message_name
+
+on_controller = pytest.mark.targets
+WAIT_S = 2.0
+MEASURED_S = 0.01
+EXCEPTION_FRAME = 8 * 4 + 18 * 4 + 4  # core and FPU registers, and the gap that aligns them
+
+
+def demo(folder: Path, *options: str) -> int:
+    return main(["demo", "--out", str(folder), "--lcm", own_lcm(), *options])
+
+
+def firmware_frames(folder: Path) -> list[can.Message]:
+    with can.CanutilsLogReader(folder / "walk.candump.log") as log:
+        return [frame for frame in log if frame.arbitration_id >= 0x120]
+
+
+@on_controller
+def test_a_walk_has_the_very_frames_of_the_host_process(tmp_path, capsys):
+    """With another body than the image's own, so that what is fitted to the wearer matters."""
+    walk = ["--height", "1.6", "--mass", "50", "--speed", "1.1", "--duration", "8"]
+    walk += ["--push", "12@5:90"]
+    assert demo(tmp_path / "host", "--clock", "lockstep", "--can", private_udp(), *walk) == 0
+    assert demo(tmp_path / "controller", "--firmware", "qemu-m4", *walk) == 0
+    told = capsys.readouterr().out
+    assert f"controller: {round(8 / TICK_S)} ticks, 0 late, 0 missed" in told
+    assert "a controller has none" in told
+    by_host, by_controller = (firmware_frames(tmp_path / name) for name in ("host", "controller"))
+    assert len(by_host) == len(by_controller) == 21 * round(8 / TICK_S)
+    for number, (one, other) in enumerate(zip(by_host, by_controller, strict=True)):
+        place = f"{message_name(one.arbitration_id)} of tick {number // 21}"
+        assert (one.arbitration_id, one.data.hex()) == (other.arbitration_id, other.data.hex()), (
+            f"{place} differs"
+        )
+    assert (tmp_path / "host/walk.csv").read_bytes() == (
+        tmp_path / "controller/walk.csv"
+    ).read_bytes()
+
+
+def send_measurement(bus: SlcanBus, sender: Sender) -> None:
+    for name, values in STANDING.items():
+        bus.send(sender.frame(name, **values))
+
+
+@on_controller
+def test_in_real_time_its_timer_makes_the_ticks_and_ages_grow():
+    reader, sender, ticks = TickReader(), Sender(), []
+    with qemu.running_controller(configuration({}), "realtime") as controller:
+        bus = controller.bus
+        end_s = time.monotonic() + 2.0
+        while (now_s := time.monotonic()) < end_s:
+            bus.send(sender.frame("COMMAND", **WALK))
+            send_measurement(bus, sender)
+            while messages := next_tick(bus, reader.feed, now_s + MEASURED_S - time.monotonic()):
+                ticks.append(messages)
+        silent = [next_tick(bus, reader.feed, WAIT_S) for _ in range(5)]
+    told = re.match(r"(\d+) ticks, (\d+) late", controller.words)
+    assert int(told[1]) == pytest.approx(2.0 / TICK_S + 5, abs=3)
+    assert ticks[-1]["HEALTH"]["REJECTED_FRAMES"] == 0
+    assert statistics.median(tick["TIMING"]["PERIOD"] for tick in ticks[5:]) == pytest.approx(
+        TICK_S, abs=0.002
+    )
+    assert statistics.median(tick["INPUTS"]["COM_AGE"] for tick in ticks) < 30
+    ages = [tick["INPUTS"]["COM_AGE"] for tick in silent]
+    assert [later - age for age, later in itertools.pairwise(ages)] == [TICK_S * 1000] * 4
+
+
+@on_controller
+def test_its_stack_stays_below_the_worst_case_and_it_has_no_heap(monkeypatch):
+    monkeypatch.syspath_prepend(Path(__file__).parents[1] / "targets")
+    import stack
+
+    tools = "arm-none-eabi-"
+    disassembly = subprocess.check_output(
+        [f"{tools}objdump", "-d", "--no-show-raw-insn", qemu.IMAGE], text=True
+    )
+    graph = stack.of_image(disassembly)
+    interrupts = ("on_timer", "on_uart_received", "mps2_uart_sent")
+    worst = (
+        graph.frames["_start"]
+        + graph.frames["main"]
+        + graph.worst("saddle_controller_step")
+        + EXCEPTION_FRAME
+        + max(map(graph.worst, interrupts))
+    )
+    sender = Sender()
+    with qemu.running_controller(configuration({})) as controller:
+        reader = TickReader()
+        for _ in range(100):
+            controller.bus.send(sender.frame("COMMAND", **WALK))
+            send_measurement(controller.bus, sender)
+            assert next_tick(controller.bus, reader.feed, WAIT_S)
+    used, size = map(int, re.search(r"stack: (\d+) of (\d+) bytes", controller.words).groups())
+    assert 1000 < used <= worst < size
+    names = subprocess.check_output([f"{tools}nm", qemu.IMAGE], text=True).split()
+    assert not {"malloc", "calloc", "realloc", "free", "sbrk", "_sbrk"} & set(names)
+
+
+@on_controller
+def test_a_configuration_that_saddle_init_refuses_is_told():
+    with (
+        pytest.raises(UserError, match=r"saddle_init: status 2, body_mass_kg"),
+        qemu.running_controller(configuration({"body_mass_kg": math.nan})),
+    ):
+        pass
+
+
+def test_what_is_missing_is_named(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(qemu, "IMAGE", tmp_path / "image")
+    for program in ("qemu-system-arm", "arm-none-eabi-gcc"):
+        monkeypatch.setenv("PATH", str(tmp_path))
+        assert demo(tmp_path / "out", "--firmware", "qemu-m4") == 2
+        told = capsys.readouterr().err
+        assert told.count("\n") == 1 and program in told and "apt-get install" in told
+        (tmp_path / program).write_text("#!/bin/sh\n")
+        (tmp_path / program).chmod(0o755)
+    assert demo(tmp_path / "out", "--firmware", "qemu-m4") == 2
+    assert "run `make controller`" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("option", [["--clock", "realtime"], ["--can", "udp"]])
+def test_what_a_controller_cannot_do_is_refused(tmp_path, capsys, option):
+    assert demo(tmp_path / "out", "--firmware", "qemu-m4", *option) == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1 and " ".join(option) in told
+
+
+@pytest.fixture
+def line():
+    """A bus and the other end of its line."""
+    ours, theirs = socket.socketpair()
+    with theirs, SlcanBus(ours, "a line") as bus:
+        yield bus, theirs
+        theirs.close()
+
+
+def test_frames_go_over_a_line_as_text(line):
+    bus, theirs = line
+    bus.send(can.Message(arbitration_id=0x7A, data=b"\x01\xfe", is_extended_id=False))
+    assert theirs.recv(100) == b"t07A201FE\r"
+    theirs.sendall(b"t1403FE009A\rt7FF0\rt10")
+    first, second = bus.recv(WAIT_S), bus.recv(WAIT_S)
+    assert (first.arbitration_id, bytes(first.data)) == (0x140, b"\xfe\x00\x9a")
+    assert (second.arbitration_id, bytes(second.data)) == (0x7FF, b"")
+    assert bus.recv(0.01) is None
+    theirs.sendall(b"01FF\r")
+    assert text_of(bus.recv(WAIT_S)) == b"t1001FF\r"
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "t", "x1001FF", "t1002FF", "t8000", "t100900112233445566778899", "t1001F", "t1001é"],
+)
+def test_a_line_that_is_no_frame_is_counted(line, text):
+    bus, theirs = line
+    assert frame_of(text.encode()) is None
+    theirs.sendall(text.encode() + b"\rt1001FF\r")
+    assert bus.recv(WAIT_S).arbitration_id == 0x100
+    assert bus.malformed == 1
+
+
+def test_a_line_whose_other_end_is_gone_is_named(line):
+    bus, theirs = line
+    theirs.close()
+    with pytest.raises(UserError, match="a line has ended"):
+        bus.recv(WAIT_S)
+    with pytest.raises(UserError, match="a line has ended"):
+        bus.send(can.Message(arbitration_id=1, data=bytes(FRAME_LENGTH), is_extended_id=False))
+
+
+def test_a_bus_that_is_closed_leaves_the_line_in_order(line):
+    bus, theirs = line
+    theirs.sendall(b"t1001FF\r" * 100)
+    theirs.shutdown(socket.SHUT_WR)
+    bus.shutdown()
+    assert theirs.recv(100) == b"C\r"

@@ -1,0 +1,238 @@
+/** The loop of a controller on a board that does as the test says. */
+#include <board.h>
+#include <controller.h>
+
+#include <string.h>
+#include <unity.h>
+
+static saddle_controller_t controller;
+static saddle_config_t config;
+
+static saddle_can_queue_t coming;
+static saddle_can_frame_t sent[4 * SADDLE_WIRE_OUTPUT_FRAMES];
+static uint32_t frames_sent, room, lost;
+static uint64_t now_us;
+static uint32_t sending_us; /* what each frame takes */
+static uint32_t ticks_due;
+static uint32_t kicks;
+static bool flood;
+
+bool saddle_can_receive(saddle_can_frame_t *frame)
+{
+    static const saddle_can_frame_t stray = {.id = 0x7FF};
+    *frame = stray;
+    return flood || saddle_can_queue_take(&coming, frame);
+}
+
+uint32_t saddle_can_lost(void)
+{
+    return lost;
+}
+
+bool saddle_can_send(const saddle_can_frame_t *frame)
+{
+    now_us += sending_us;
+    if (frames_sent == room) {
+        return false;
+    }
+    sent[frames_sent] = *frame;
+    ++frames_sent;
+    return true;
+}
+
+uint64_t saddle_clock_now_us(void)
+{
+    return now_us;
+}
+
+uint32_t saddle_clock_ticks_due(void)
+{
+    return ticks_due;
+}
+
+void saddle_watchdog_kick(void)
+{
+    ++kicks;
+}
+
+void setUp(void)
+{
+    memset(&coming, 0, sizeof coming);
+    room = sizeof sent / sizeof sent[0];
+    frames_sent = lost = sending_us = ticks_due = kicks = 0;
+    now_us = 0;
+    flood = false;
+    config = saddle_config_default(1.79f, 63.3f);
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_controller_init(&controller, &config, false));
+}
+
+void tearDown(void) {}
+
+/** The timer comes round; the loop sees it late by as much. */
+static void timer(uint32_t late_us)
+{
+    ++ticks_due;
+    now_us = (uint64_t)ticks_due * SADDLE_TICK_US + late_us;
+    saddle_controller_step(&controller);
+}
+
+static void bring(const saddle_frame_t *from, uint64_t came_us)
+{
+    saddle_can_frame_t frame = {.came_us = came_us, .id = from->id, .length = sizeof from->data};
+    memcpy(frame.data, from->data, sizeof frame.data);
+    TEST_ASSERT_TRUE(saddle_can_queue_put(&coming, &frame));
+}
+
+static void bring_set(uint8_t counter, uint64_t came_us)
+{
+    const saddle_measurement_t measurement = {.com.height_m = 1.0f};
+    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
+    saddle_wire_encode_measurement(&measurement, counter, frames);
+    for (size_t i = 0; i < SADDLE_WIRE_MEASURED_FRAMES; ++i) {
+        bring(&frames[i], came_us);
+    }
+}
+
+static uint16_t rejected_frames(const saddle_can_frame_t *health)
+{
+    return (uint16_t)(health->data[6] | health->data[7] << 8);
+}
+
+static void test_the_timer_makes_a_tick_due_once(void)
+{
+    saddle_controller_step(&controller);
+    TEST_ASSERT_EQUAL_UINT32(0, frames_sent);
+    timer(120);
+    saddle_controller_step(&controller);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_WIRE_OUTPUT_FRAMES, frames_sent);
+    TEST_ASSERT_EQUAL_HEX16(0x140, sent[frames_sent - 1u].id);
+    TEST_ASSERT_EQUAL_UINT64(SADDLE_TICK_US, controller.inbox.input.time_us);
+    TEST_ASSERT_EQUAL_UINT32(120, controller.timing.latency_us);
+    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(2 * SADDLE_WIRE_OUTPUT_FRAMES, frames_sent);
+    TEST_ASSERT_EQUAL_UINT8(1, sent[frames_sent - 1u].data[1] & 15u);
+    TEST_ASSERT_EQUAL_UINT32(2, kicks);
+}
+
+static void test_a_late_tick_does_not_kick_the_watchdog(void)
+{
+    sending_us = SADDLE_TICK_US / SADDLE_WIRE_OUTPUT_FRAMES; /* just in time */
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+    ++sending_us;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+    TEST_ASSERT_EQUAL_UINT32(1, controller.timing.late_ticks);
+    sending_us = 0;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(2, kicks);
+}
+
+static void test_a_tick_that_is_refused_does_not_kick_the_watchdog(void)
+{
+    timer(0);
+    controller.context.last_time_us = UINT64_C(1) << 40;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_ERROR_TIME, sent[frames_sent - 1u].data[1] >> 4);
+}
+
+static void test_what_saddle_init_returns_is_told(void)
+{
+    config.body_mass_kg = -1.0f;
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_CONFIG,
+                          saddle_controller_init(&controller, &config, false));
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(0, kicks);
+}
+
+static void test_missed_ticks_are_counted_not_made_up_for(void)
+{
+    timer(0);
+    ticks_due += 3;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(2, controller.timing.ticks);
+    TEST_ASSERT_EQUAL_UINT32(3, controller.timing.missed_ticks);
+    TEST_ASSERT_EQUAL_UINT64(5 * SADDLE_TICK_US, controller.inbox.input.time_us);
+}
+
+static void test_measurements_that_cease_grow_old(void)
+{
+    bring_set(0, SADDLE_TICK_US - 5000u);
+    timer(0);
+    const saddle_measurement_t *measurement = &controller.inbox.input.measurement;
+    TEST_ASSERT_EQUAL_UINT32(5000, measurement->com.age_us);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US, controller.inbox.input.command_age_us);
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_TICK_US + 5000u, measurement->foot[SADDLE_LEFT].age_us);
+}
+
+static void test_the_newest_of_what_waits_is_used(void)
+{
+    bring_set(0, 10000);
+    bring_set(1, 20000);
+    bring_set(2, 30000);
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_TICK_US - 30000u,
+                             controller.inbox.input.measurement.com.age_us);
+}
+
+static void test_what_has_no_room_is_counted(void)
+{
+    room = 20;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_WIRE_OUTPUT_FRAMES - 20u, controller.not_sent);
+    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+}
+
+static void test_frames_lost_by_the_board_are_told(void)
+{
+    lost = 3;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT16(3, rejected_frames(&sent[frames_sent - 1u]));
+}
+
+static void test_a_flood_does_not_hold_up_a_tick(void)
+{
+    flood = true;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+}
+
+static void test_in_lockstep_a_set_makes_a_tick_due(void)
+{
+    (void)saddle_controller_init(&controller, &config, true);
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(0, frames_sent);
+    bring_set(0, 123456);
+    bring_set(1, 234567);
+    saddle_controller_step(&controller);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_WIRE_OUTPUT_FRAMES, frames_sent);
+    TEST_ASSERT_EQUAL_UINT64(0, controller.inbox.input.time_us);
+    saddle_controller_step(&controller);
+    TEST_ASSERT_EQUAL_UINT32(2 * SADDLE_WIRE_OUTPUT_FRAMES, frames_sent);
+    TEST_ASSERT_EQUAL_UINT64(SADDLE_TICK_US, controller.inbox.input.time_us);
+    TEST_ASSERT_EQUAL_UINT32(0, controller.inbox.input.measurement.com.age_us);
+    TEST_ASSERT_EQUAL_UINT32(0, controller.timing.latency_us);
+    TEST_ASSERT_EQUAL_UINT32(0, controller.timing.late_ticks);
+    saddle_controller_step(&controller);
+    TEST_ASSERT_EQUAL_UINT32(2, controller.timing.ticks);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_timer_makes_a_tick_due_once);
+    RUN_TEST(test_a_late_tick_does_not_kick_the_watchdog);
+    RUN_TEST(test_a_tick_that_is_refused_does_not_kick_the_watchdog);
+    RUN_TEST(test_what_saddle_init_returns_is_told);
+    RUN_TEST(test_missed_ticks_are_counted_not_made_up_for);
+    RUN_TEST(test_measurements_that_cease_grow_old);
+    RUN_TEST(test_the_newest_of_what_waits_is_used);
+    RUN_TEST(test_what_has_no_room_is_counted);
+    RUN_TEST(test_frames_lost_by_the_board_are_told);
+    RUN_TEST(test_a_flood_does_not_hold_up_a_tick);
+    RUN_TEST(test_in_lockstep_a_set_makes_a_tick_due);
+    return UNITY_END();
+}
