@@ -36,7 +36,7 @@ static bool read_frame(const char *line, size_t length, saddle_can_frame_t *fram
 {
     uint32_t id;
     uint32_t bytes;
-    if (length < HEADER || !read_number(line + 1, ID_DIGITS, &id) || id > ID_MAX ||
+    if (!read_number(line + 1, ID_DIGITS, &id) || id > ID_MAX ||
         !read_number(line + 1 + ID_DIGITS, 1, &bytes) || bytes > SADDLE_WIRE_LENGTH ||
         length != HEADER + 2u * bytes) {
         return false;

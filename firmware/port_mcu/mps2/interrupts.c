@@ -7,6 +7,12 @@ void _start(void);     /* the C library's */
 
 static volatile bool woken;
 
+/** The watchdog's first warning. Here a maker brings the machine into its safe state; a tick that is
+ *  in time may still take the warning back. */
+static void on_watchdog(void)
+{
+}
+
 static void hang(void)
 {
     for (;;) { /* nothing can be trusted any more: the watchdog resets the controller */
@@ -31,7 +37,8 @@ typedef void (*handler_t)(void);
 typedef struct {
     const void *stack;
     handler_t reset;
-    handler_t faults[14]; /* the watchdog's first warning among them, as an NMI */
+    handler_t warning; /* NMI */
+    handler_t faults[13];
     handler_t interrupts[MPS2_INTERRUPTS];
 } vectors_t;
 
@@ -39,7 +46,8 @@ extern const vectors_t __interrupt_vector; /* so the C library calls it */
 const vectors_t __interrupt_vector __attribute__((section(".data.init.enter"), used)) = {
     .stack = __stack,
     .reset = _start,
-    .faults = {hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang},
+    .warning = on_watchdog,
+    .faults = {hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang},
     .interrupts = {[MPS2_UART_RECEIVED] = on_uart_received,
                    [MPS2_UART_SENT] = mps2_uart_sent,
                    [MPS2_TIMER] = on_timer},
