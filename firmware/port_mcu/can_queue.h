@@ -4,7 +4,7 @@
 
 #include <saddlewalk/wire.h>
 
-/** A power of 2. Room for an output, or for 120 ms of measurements at 100 Hz. */
+/** A power of 2. Room for an output, or for 100 ms of measurements at 100 Hz. */
 #define SADDLE_CAN_QUEUE 32u
 
 /** A classic data frame with an 11-bit identifier. */

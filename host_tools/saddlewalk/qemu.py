@@ -41,13 +41,14 @@ def running_controller(config: Any, clock: str = "lockstep") -> Iterator[Control
 
     Raises UserError if something is missing, or with its last words if it failed.
     """
-    image = _image()
+    if problem := missing():
+        raise UserError(problem)
     ours, theirs = socket.socketpair()
     with tempfile.TemporaryDirectory() as folder, theirs:
         page = Path(folder) / "settings"
         page.write_bytes(settings_page(config, clock))
         process = subprocess.Popen(
-            _command(image, page, theirs.fileno()),
+            _command(page, theirs.fileno()),
             pass_fds=[theirs.fileno()],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
@@ -86,19 +87,13 @@ def missing() -> str:
     return f"{IMAGE} is missing: run `make controller` in {CHECKOUT}"
 
 
-def _image() -> Path:
-    if problem := missing():
-        raise UserError(problem)
-    return IMAGE
-
-
-def _command(image: Path, page: Path, line: int) -> list[str]:
+def _command(page: Path, line: int) -> list[str]:
     return [
         *(_EMULATOR, "-M", MACHINE, "-display", "none", "-monitor", "none"),
         *("-chardev", f"socket,id=can,fd={line}", "-serial", "chardev:can"),
         *("-semihosting-config", "enable=on,target=native"),
         *("-device", f"loader,file={page},addr={_SETTINGS_ADDRESS:#x},force-raw=on"),
-        *("-kernel", os.fspath(image)),
+        *("-kernel", os.fspath(IMAGE)),
     ]
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import can
 import pytest
 
-from host_node import STANDING, WALK, own_lcm
+from host_node import MESSAGES_PER_TICK, STANDING, WALK, own_lcm
 from saddlewalk import qemu
 from saddlewalk.bus import private_udp
 from saddlewalk.cli import main
@@ -42,21 +42,24 @@ def test_a_walk_has_the_very_frames_of_the_host_process(tmp_path, capsys):
     """With another body than the image's own, so that what is fitted to the wearer matters."""
     walk = ["--height", "1.6", "--mass", "50", "--speed", "1.1", "--duration", "8"]
     walk += ["--push", "12@5:90"]
-    assert demo(tmp_path / "host", "--clock", "lockstep", "--can", private_udp(), *walk) == 0
-    assert demo(tmp_path / "controller", "--firmware", "qemu-m4", *walk) == 0
+    by_host = demo(tmp_path / "host", "--clock", "lockstep", "--can", private_udp(), *walk)
+    by_controller = demo(tmp_path / "controller", "--firmware", "qemu-m4", *walk)
+    assert_same_frames(firmware_frames(tmp_path / "host"), firmware_frames(tmp_path / "controller"))
+    one, other = (tmp_path / name / "walk.csv" for name in ("host", "controller"))
+    assert one.read_bytes() == other.read_bytes()
     told = capsys.readouterr().out
+    assert by_host == by_controller == 0, told
     assert f"controller: {round(8 / TICK_S)} ticks, 0 late, 0 missed" in told
     assert "a controller has none" in told
-    by_host, by_controller = (firmware_frames(tmp_path / name) for name in ("host", "controller"))
-    assert len(by_host) == len(by_controller) == 21 * round(8 / TICK_S)
-    for number, (one, other) in enumerate(zip(by_host, by_controller, strict=True)):
-        place = f"{message_name(one.arbitration_id)} of tick {number // 21}"
-        assert (one.arbitration_id, one.data.hex()) == (other.arbitration_id, other.data.hex()), (
-            f"{place} differs"
-        )
-    assert (tmp_path / "host/walk.csv").read_bytes() == (
-        tmp_path / "controller/walk.csv"
-    ).read_bytes()
+
+
+def assert_same_frames(by_host: list[can.Message], by_controller: list[can.Message]) -> None:
+    assert len(by_host) == MESSAGES_PER_TICK * round(8 / TICK_S)
+    pairs = zip(by_host, by_controller, strict=True)
+    for number, (one, other) in enumerate(pairs):
+        place = f"{message_name(one.arbitration_id)} of tick {number // MESSAGES_PER_TICK}"
+        assert one.arbitration_id == other.arbitration_id, f"instead of {place}"
+        assert one.data.hex() == other.data.hex(), place
 
 
 def send_measurement(bus: SlcanBus, sender: Sender) -> None:
