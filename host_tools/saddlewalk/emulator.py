@@ -501,9 +501,16 @@ class Wearer:
         return min(max(1.0 - self._since_landing_s / duration_s, 0.0), 1.0)
 
     def _must_wait(self, plan: Plan) -> bool:
-        """The last swing is slow: it does not begin before the stance foot can carry alone."""
+        """The last swing is slow: until it lands the XCoM must fall neither outwards nor past it."""
+        if not plan.lands_beside:
+            return False
+        half_width_m = plan.half_width_m
         lever_m = (self.xcom_m - self.feet[plan.support].position_m).imag
-        return plan.lands_beside and abs(lever_m) > self.body.foot_half_width_m
+        inward_m = lever_m * math.copysign(1.0, half_width_m)
+        edge_m = self.body.foot_half_width_m
+        left_s = max(plan.landing_in_s - self._plan_age_s, 0.0)
+        grown = math.exp(self.body.natural_frequency_rad_s * left_s)
+        return inward_m < -edge_m or edge_m + (inward_m - edge_m) * grown > abs(half_width_m)
 
     def _move_cop(self, wanted: complex) -> None:
         """Follow the wanted CoP with a lag, within the hull of the feet that stand."""

@@ -51,6 +51,16 @@ def walk_of(index: int, fell_at_s=math.nan, alarm_at_s=math.nan, **changes) -> W
     return replace(walk, trial=replace(trial, **changes))
 
 
+@pytest.mark.parametrize("index", [-20, -24])
+@pytest.mark.parametrize("kind", KINDS)
+def test_nobody_falls_while_stopping(kind, index):
+    """One once crawled through a step too slow to stand on a leg; one's last swing never began."""
+    trial = draw(1, index, kind, MASS_KG)
+    assert 0.67 < trial.speed_m_s < 0.71
+    ticks, fell_at_s = run(trial, default_config())
+    assert math.isnan(fell_at_s) and ticks["mode"][-1] == library().SADDLE_MODE_STANDING
+
+
 def test_one_rectangle_margin_is_the_distance_to_its_border():
     height_m = 2.0
     half = np.array([FOOT_LENGTH, FOOT_BREADTH]) * height_m / 2

@@ -414,6 +414,25 @@ static void test_restart_while_stopping_is_smooth(void)
     }
 }
 
+/* v = 0.9 (a s + sqrt(a^2 s^2 + 2 a i)) = 0.42 m/s: a step at it is long enough to brake. */
+static void test_stop_slows_no_further_than_a_step_can_brake(void)
+{
+    for (int moment = 0; moment < 40; moment += EVERY(7)) {
+        join(0.7f);
+        for (int k = 0; k < moment; k++) {
+            tick(40000);
+        }
+        command.mode = SADDLE_COMMAND_STAND;
+        tick(80000);
+        float before_braking_m_s = plan.speed_m_s;
+        while (!planner.braking) {
+            before_braking_m_s = plan.speed_m_s;
+            tick(80000);
+        }
+        TEST_ASSERT_TRUE(before_braking_m_s > 0.4209f);
+    }
+}
+
 static void test_stop_of_a_slow_walk_stays_slow(void)
 {
     static const float accelerations[] = {0.5f, 5.0f};
@@ -795,6 +814,7 @@ int main(void)
     RUN_TEST(test_stop_at_any_moment_ends_side_by_side);
     RUN_TEST(test_command_at_any_moment_is_obeyed_in_the_end);
     RUN_TEST(test_restart_while_stopping_is_smooth);
+    RUN_TEST(test_stop_slows_no_further_than_a_step_can_brake);
     RUN_TEST(test_stop_of_a_slow_walk_stays_slow);
     RUN_TEST(test_ticks_of_any_length_start_alike);
     RUN_TEST(test_stop_while_starting);

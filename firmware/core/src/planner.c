@@ -9,8 +9,11 @@
 /* Feet that a walk can start from are at least this far apart across. */
 #define START_WIDTH_MIN_M 0.05f
 
-/* A stop slows to this speed at most before it brakes. */
+/* A stop speeds a slower walk up to this at most before it brakes. */
 #define CRAWL_MAX_M_S 0.3f
+
+/* A stop goes on at this share of the speed from which a steady step is just long enough to brake. */
+#define BRAKING_MARGIN 0.9f
 
 /* A last swing, a shift and a first step may follow each other within one long tick. */
 #define MODES_A_TICK 4
@@ -240,13 +243,23 @@ static float stopping_way_m(const saddle_cycle_t *cycle)
     return saddle_cycle_before_landing(cycle) ? way_m + cycle->quarter.length_m : way_m;
 }
 
-/* The speed at which a stop goes on until it brakes: slow, feasible, and such that every step is
- * long enough to brake. */
+/* The least speed at which a stop goes on until it brakes: slow, feasible, and such that every step
+ * is long enough to brake. */
 static float crawl_m_s(const saddle_config_t *config, const saddle_body_t *body)
 {
     const float feasible_m_s = SADDLE_CEILING_MARGIN * body->speed_ceiling_m_s;
     const float braked_m_s = sqrtf(config->acceleration_m_s2 * config->half_step_intercept_m);
     return saddle_clamp(braked_m_s, 0.0f, saddle_clamp(feasible_m_s, 0.0f, CRAWL_MAX_M_S));
+}
+
+/* The largest: at it, v^2 = 2 a l(v), l(v) the steady half step. */
+static float braked_in_a_step_m_s(const saddle_config_t *config)
+{
+    const float rate_m_s2 = config->acceleration_m_s2;
+    const float by_slope_m_s = rate_m_s2 * config->half_step_slope_s;
+    const float by_intercept_m2_s2 = 2.0f * rate_m_s2 * config->half_step_intercept_m;
+    return BRAKING_MARGIN *
+           (by_slope_m_s + sqrtf(by_slope_m_s * by_slope_m_s + by_intercept_m2_s2));
 }
 
 /* May the step after the next landing be the last, braking no harder than allowed? */
@@ -286,7 +299,9 @@ static void profile_of_stop(saddle_planner_t *planner, const saddle_config_t *co
         profile->target = 0;
         profile->rate_m_s2 = way_m > 0.0f ? speed_m_s * speed_m_s / (2.0f * way_m) : 0.0f;
     } else {
-        profile->target = saddle_speed_from_m_s(slow_m_s);
+        const float fast_m_s = braked_in_a_step_m_s(config);
+        profile->target = saddle_speed_from_m_s(
+            saddle_clamp(speed_m_s, slow_m_s, fast_m_s > slow_m_s ? fast_m_s : slow_m_s));
         profile->rate_m_s2 = config->acceleration_m_s2;
     }
 }
