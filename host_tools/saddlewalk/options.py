@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import os
 from collections.abc import Callable
 
 
@@ -54,6 +55,24 @@ def add_gait_options(parser: argparse.ArgumentParser, default_pace: str | None =
         default=10.0,
         metavar="DEG",
         help="foot angle at heel strike (default 10)",
+    )
+
+
+def add_campaign_options(parser: argparse.ArgumentParser) -> None:
+    """--seed and --jobs of many walks at once."""
+    parser.add_argument(
+        "--seed",
+        type=whole_number_in(0, 2**32 - 1),
+        default=1,
+        metavar="N",
+        help="of everything random (default 1)",
+    )
+    parser.add_argument(
+        "--jobs",
+        type=whole_number_in(1, 1024),
+        default=len(os.sched_getaffinity(0)),
+        metavar="N",
+        help="processes that share the work (default: one for each core)",
     )
 
 

@@ -3,7 +3,6 @@
 import argparse
 import json
 import math
-import os
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
 from saddlewalk.errors import UserError
-from saddlewalk.options import whole_number_in
+from saddlewalk.options import add_campaign_options, whole_number_in
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -34,20 +33,7 @@ def add_parser(subparsers: Any) -> None:
         metavar="N",
         help=f"pushed walks of each kind of wearer (default {WALKS})",
     )
-    parser.add_argument(
-        "--seed",
-        type=whole_number_in(0, 2**32 - 1),
-        default=1,
-        metavar="N",
-        help="of everything random (default 1)",
-    )
-    parser.add_argument(
-        "--jobs",
-        type=whole_number_in(1, 1024),
-        default=len(os.sched_getaffinity(0)),
-        metavar="N",
-        help="processes that share the work (default: one for each core)",
-    )
+    add_campaign_options(parser)
     parser.add_argument(
         "--gait",
         type=Path,

@@ -3,14 +3,13 @@
 import argparse
 import contextlib
 import math
-import os
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
-from saddlewalk.options import whole_number_in
+from saddlewalk.options import add_campaign_options, whole_number_in
 
 if TYPE_CHECKING:
     from saddlewalk.fault_campaign import Outcome, Row
@@ -46,20 +45,7 @@ def add_parser(subparsers: Any) -> None:
         help="walks in real time for each class, with saddlewalk-host over UDP and LCM "
         f"(default {LIVE_RUNS})",
     )
-    parser.add_argument(
-        "--seed",
-        type=whole_number_in(0, 2**32 - 1),
-        default=1,
-        metavar="N",
-        help="of everything random (default 1)",
-    )
-    parser.add_argument(
-        "--jobs",
-        type=whole_number_in(1, 1024),
-        default=len(os.sched_getaffinity(0)),
-        metavar="N",
-        help="processes that share the work (default: one for each core)",
-    )
+    add_campaign_options(parser)
     add_body_options(parser)
     parser.set_defaults(run=run)
 
