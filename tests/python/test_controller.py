@@ -23,6 +23,7 @@ from saddlewalk.ticks import TICK_S, TickReader, next_tick
 from saddlewalk.wire import FRAME_LENGTH, Sender, message_name
 
 on_controller = pytest.mark.targets
+START_S = 10.0  # for what must come from a machine that starts
 WAIT_S = 2.0
 MEASURED_S = 0.01
 EXCEPTION_FRAME = 8 * 4 + 18 * 4 + 4  # core and FPU registers, and the gap that aligns them
@@ -72,22 +73,30 @@ def test_in_real_time_its_timer_makes_the_ticks_and_ages_grow():
     reader, sender, ticks = TickReader(), Sender(), []
     with qemu.running_controller(configuration({}), "realtime") as controller:
         bus = controller.bus
-        end_s = time.monotonic() + 2.0
-        while (now_s := time.monotonic()) < end_s:
+        assert next_tick(bus, reader.feed, START_S)
+        begun_s = time.monotonic()
+        while (now_s := time.monotonic()) < begun_s + 2.0:
             bus.send(sender.frame("COMMAND", **WALK))
             send_measurement(bus, sender)
             while messages := next_tick(bus, reader.feed, now_s + MEASURED_S - time.monotonic()):
                 ticks.append(messages)
-        silent = [next_tick(bus, reader.feed, WAIT_S) for _ in range(5)]
-    told = re.match(r"(\d+) ticks, (\d+) late", controller.words)
-    assert int(told[1]) == pytest.approx(2.0 / TICK_S + 5, abs=3)
-    assert ticks[-1]["HEALTH"]["REJECTED_FRAMES"] == 0
-    assert statistics.median(tick["TIMING"]["PERIOD"] for tick in ticks[5:]) == pytest.approx(
-        TICK_S, abs=0.002
+        silent = [next_tick(bus, reader.feed, WAIT_S) for _ in range(12)]
+        ran_s = time.monotonic() - begun_s
+    made, missed = map(
+        int, re.match(r"(\d+) ticks, \d+ late, (\d+) missed", controller.words).groups()
     )
+    assert made + missed == pytest.approx(ran_s / TICK_S, abs=3)
+    assert ticks[-1]["HEALTH"]["REJECTED_FRAMES"] == 0
+    periods_s = [tick["TIMING"]["PERIOD"] for tick in ticks[5:]]
+    assert statistics.median(periods_s) == pytest.approx(TICK_S, abs=0.002)
     assert statistics.median(tick["INPUTS"]["COM_AGE"] for tick in ticks) < 30
-    ages = [tick["INPUTS"]["COM_AGE"] for tick in silent]
-    assert [later - age for age, later in itertools.pairwise(ages)] == [TICK_S * 1000] * 4
+    ages_ms = [tick["INPUTS"]["COM_AGE"] for tick in silent[-5:]]
+    growth_ms = {later - age for age, later in itertools.pairwise(ages_ms)}
+    assert growth_ms <= {
+        80.0,
+        160.0,
+        240.0,
+    }  # more than one tick's where a busy machine missed some
 
 
 @on_controller
