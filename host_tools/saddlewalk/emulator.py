@@ -501,7 +501,7 @@ class Wearer:
         return min(max(1.0 - self._since_landing_s / duration_s, 0.0), 1.0)
 
     def _must_wait(self, plan: Plan) -> bool:
-        """The last swing is slow: while it lasts the XCoM must fall neither outwards nor past it."""
+        """The last swing is slow: while it lasts the XCoM must fall neither out nor past it."""
         if not plan.lands_beside:
             return False
         half_width_m = plan.half_width_m
