@@ -6,7 +6,7 @@
 
 #define MPS2_CLOCK_HZ 25000000u
 
-/** Interrupts by their number at the NVIC; uart.c and timer.c define what they do. */
+/** Interrupts by their number at the NVIC, and what vectors.c has them do. */
 enum { MPS2_UART_RECEIVED = 0, MPS2_UART_SENT = 1, MPS2_TIMER = 8, MPS2_INTERRUPTS = 32 };
 void mps2_uart_received(void);
 void mps2_uart_sent(void);
@@ -18,8 +18,9 @@ void mps2_interrupt_enable(uint32_t number);
 uint32_t mps2_interrupts_hold(void);
 void mps2_interrupts_restore(uint32_t held);
 
-/** Sleep until an interrupt has come since the last call. */
+/** Sleep until mps2_wake() has been called, by an interrupt, since the last call. */
 void mps2_sleep(void);
+void mps2_wake(void);
 
 /** Start the 80 ms timer. */
 void mps2_clock_start(void);
