@@ -8,6 +8,7 @@ import struct
 import can
 
 from saddlewalk.errors import UserError
+from saddlewalk.paths import install_command
 from saddlewalk.wire import Receiver, Sender, identifier
 
 KEY_BYTES = 16
@@ -55,8 +56,7 @@ def code_of(key: bytes, session: int, freshness: int, command: can.Message) -> i
         from cryptography.hazmat.primitives.cmac import CMAC
     except ImportError as error:
         raise UserError(
-            "codes of commands need the extra authentication: "
-            "pip install saddlewalk[authentication]"
+            f"codes of commands need cryptography: {install_command('authentication')}"
         ) from error
     cmac = CMAC(AES(key))
     cmac.update(struct.pack("<IHH", session, freshness, command.arbitration_id))

@@ -10,6 +10,7 @@ from typing import NoReturn
 
 from saddlewalk import __version__, commands
 from saddlewalk.errors import UserError
+from saddlewalk.paths import need_checkout
 
 
 class _Parser(argparse.ArgumentParser):
@@ -50,6 +51,7 @@ def main(argv: list[str] | None = None) -> int:
     try:
         if sys.stdout is None:
             raise UserError("standard output is closed: give one, such as /dev/null")
+        need_checkout()
         status = args.run(args)
         sys.stdout.flush()
         return status

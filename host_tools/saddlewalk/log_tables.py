@@ -16,6 +16,7 @@ from typing import IO, Any
 
 from saddlewalk.errors import UserError
 from saddlewalk.logs import CHANNEL_PREFIX, Event, decode
+from saddlewalk.paths import install_command
 from saddlewalk.table import whole_file, write_table
 
 UNITS = tuple(f"_{unit}" for unit in "m_s n_s m rad s us n j kg".split())  # longest first
@@ -167,7 +168,7 @@ def _json_type(kind: str) -> str:
 
 
 def _missing(form: str, package: str) -> UserError:
-    return UserError(f"--format {form} needs {package}: pip install saddlewalk[export]")
+    return UserError(f"--format {form} needs {package}: {install_command('export')}")
 
 
 def _files(tables: list[Table], folder: Path, suffix: str) -> list[Path]:

@@ -13,11 +13,29 @@ def build_dir() -> Path:
     return Path(os.environ.get("SADDLEWALK_BUILD") or CHECKOUT / "build")
 
 
+def need_checkout() -> None:
+    """Raise UserError if this package is a copy, as `pip install .` leaves it, far from all else.
+
+    Its firmware, DBC and LCM types are those of the checkout.
+    """
+    if not (CHECKOUT / "CMakeLists.txt").is_file():
+        raise UserError(
+            "this is a copy of the package without its checkout: "
+            "run `.venv/bin/pip install -e .` in the checkout, with -e"
+        )
+
+
+def install_command(extra: str) -> str:
+    """What adds the optional dependencies `extra` and leaves the package with its checkout."""
+    return f"run `.venv/bin/pip install -e '.[{extra}]'` in the checkout"
+
+
 def built(relative: str) -> Path:
     """The absolute path of a build product, such as `bin/saddlewalk-host`.
 
     Raises UserError, naming the product and the command that makes it, if it isn't there.
     """
+    need_checkout()
     path = build_dir().absolute() / relative
     if not path.exists():
         raise UserError(f"{path} is missing: run `make build` in {CHECKOUT}")

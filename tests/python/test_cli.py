@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from saddlewalk import paths
 from saddlewalk.cli import main
 
 SADDLEWALK = Path(sys.executable).with_name("saddlewalk")
@@ -54,3 +55,10 @@ def test_a_link_given_as_output_stays_a_link(tmp_path):
     assert main([*PLAN, "--out", str(link)]) == 0
     assert link.is_symlink() and target.read_text().startswith("t_s,")
     assert sorted(tmp_path.iterdir()) == [link, target]
+
+
+def test_a_copy_without_its_checkout_says_how_to_install(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(paths, "CHECKOUT", tmp_path)
+    assert main(PLAN) == 2
+    error = capsys.readouterr().err
+    assert "pip install -e ." in error and error.count("\n") == 1

@@ -185,7 +185,7 @@ def test_a_missing_package_is_named_with_what_installs_it(
     monkeypatch.setitem(sys.modules, package, None)
     arguments = [str(walk / "walk.lcmlog"), "--format", form, "--out", str(tmp_path / "out")]
     told = refused(arguments, capsys)
-    assert f"--format {form} needs {package}: pip install saddlewalk[export]" in told
+    assert f"--format {form} needs {package}: run `.venv/bin/pip install -e '.[export]'`" in told
     assert not list(tmp_path.iterdir())
 
 
