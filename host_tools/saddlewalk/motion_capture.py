@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from saddlewalk.errors import UserError
+from saddlewalk.paths import install_command
 from saddlewalk.recording import ABSURD_M, Recording, load_recording
 
 POINTS = ("front", "rear", "left_heel", "left_toe", "right_heel", "right_toe")
@@ -169,7 +170,7 @@ def _belt_speed(time_s: np.ndarray, heel_x_m: np.ndarray) -> float:
 def _read_c3d(path: Path) -> Capture:
     """In a process of its own: ezc3d may crash on a damaged file, and takes its process along."""
     if importlib.util.find_spec("ezc3d") is None:
-        raise UserError(f"{path}: C3D needs ezc3d: pip install saddlewalk[c3d]")
+        raise UserError(f"{path}: C3D needs ezc3d: {install_command('c3d')}")
     if not path.is_file():
         raise UserError(f"{path}: no such file")
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as reader:

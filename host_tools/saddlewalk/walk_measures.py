@@ -76,10 +76,17 @@ def measure(recording: Recording) -> WalkMeasures:
 
 def refuse(source: str, quantity: str, value: float) -> None:
     """Raise UserError unless the value is one of a human walk."""
+    told = inhuman(quantity, value)
+    if told:
+        raise UserError(f"{source}: {told}")
+
+
+def inhuman(quantity: str, value: float) -> str:
+    """What to say of a value that no human walk has; empty for one that it may have."""
     low, high, unit = HUMAN[quantity]
-    if not low <= value <= high:
-        human = f"{low:g} to {high:g} {unit}"
-        raise UserError(f"{source}: {quantity} {value:.3g} {unit} is not human: {human}")
+    if low <= value <= high:
+        return ""
+    return f"{quantity} {value:.4g} {unit} is not human: {low:g} to {high:g} {unit}"
 
 
 def _refuse_inhuman(measures: WalkMeasures) -> None:

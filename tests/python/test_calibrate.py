@@ -352,10 +352,10 @@ def scaled(walk: Recording, factor: np.ndarray) -> Recording:
 @pytest.mark.parametrize(
     ("change", "named"),
     [
-        (lambda walk: scaled(walk, np.array([1000, 1000, 1000])), "walking speed 1e+03 m/s"),
+        (lambda walk: scaled(walk, np.array([1000, 1000, 1000])), "walking speed 1000 m/s"),
         (lambda walk: scaled(walk, np.array([-1, -1, 1])), "no walk|walking speed -"),
-        (lambda walk: scaled(walk, np.array([1, 8, 1])), "step width 1.1 m is not human"),
-        (lambda walk: scaled(walk, np.array([1, -1, 1])), "step width -0.138 m is not human"),
+        (lambda walk: scaled(walk, np.array([1, 8, 1])), "step width 1.1"),
+        (lambda walk: scaled(walk, np.array([1, -1, 1])), "step width -0.138"),
         (lambda walk: scaled(walk, np.array([1, 1, 2])), "CoM height 1.8"),
         (lambda walk: scaled(walk, np.array([0, 0, 1])), "no walk"),
         (
@@ -427,7 +427,7 @@ def test_bad_trc_is_named(old, new, named, tmp_path, capsys):
 
 def test_c3d_without_ezc3d_says_what_to_install(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    assert "pip install saddlewalk[c3d]" in refusal(capsys, "calibrate", str(tmp_path / "a.c3d"))
+    assert "pip install -e '.[c3d]'" in refusal(capsys, "calibrate", str(tmp_path / "a.c3d"))
 
 
 def test_c3d_reader_that_crashes_is_an_error_of_the_file(monkeypatch, tmp_path, capsys):
@@ -522,6 +522,13 @@ def test_calibrated_plan_follows_the_walk_that_it_made(known, write, person, tmp
         assert rows["calibrated"][name] < tolerance < rows["default"][name], name
     assert rows["calibrated"]["heel_strike_s"] < 0.01 < rows["default"]["heel_strike_s"]
     assert "walk.csv" in capsys.readouterr().out
+
+
+def test_follow_tells_a_long_name_on_one_line_where_there_is_no_terminal(tmp_path, capsys):
+    path = tmp_path / f"{'long_' * 12}.csv"
+    path.write_text(csv_text(walk_of({}, 1.0)))
+    assert main(["follow", str(path)]) == 0
+    assert f" {path.name} " in capsys.readouterr().out
 
 
 def test_follow_measures_the_offset_that_it_is_given(write, tmp_path):

@@ -307,6 +307,16 @@ def test_a_replay_gives_the_same_bits_each_time(capsys, tmp_path):
     assert written[0] == written[1]
 
 
+def test_what_no_human_walks_is_told(capsys, tmp_path):
+    walk = Walk(speed_m_s=1200.0, step_length_m=650.0)
+    path = tmp_path / "millimetres.csv"
+    path.write_text(csv_text(walk.recording()))
+    assert main(["replay", str(path)]) == 0
+    told = capsys.readouterr().err.splitlines()
+    for quantity in ("walking speed 1200 m/s", "step length 650 m"):
+        assert any(f"millimetres.csv: {quantity} is not human" in line for line in told), told
+
+
 def test_a_replay_that_is_ended_ends_the_firmware(tmp_path):
     trial = tmp_path / "trial.csv"
     trial.write_text(csv_text(Walk(duration_s=60).recording()))

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 RMS_COLUMNS = "com_y_m com_z_m com_z_shape_m swing_x_m landing_m heel_strike_s".split()
 COLUMNS = ["recording", "speed_m_s", "steps", "configuration", *RMS_COLUMNS, "limited"]
+WIDEST = 1000  # characters
 SHOWN = ("y\nmm", "z\nmm", "shape\nmm", "swing\nmm", "landing\nmm", "strike\nms")
 
 
@@ -62,7 +63,12 @@ def run(args: argparse.Namespace) -> int:
     if args.out:
         write_table(args.out, COLUMNS, rows)
     told = sys.stderr if args.out == "-" else sys.stdout
-    Console(file=told).print(_table(rows))
+    console, table = Console(file=told), _table(rows)
+    if not console.is_terminal:  # a file or a pipe has no width that names would have to fold to
+        console.width = table.__rich_measure__(
+            console, console.options.update(max_width=WIDEST)
+        ).maximum
+    console.print(table)
     return 0
 
 
@@ -87,7 +93,11 @@ def _table(rows: list[list]) -> Any:
     from rich.markup import escape
     from rich.table import Table
 
-    table = Table(box=SIMPLE, title="RMS of recorded minus planned: paper's defaults → calibrated")
+    table = Table(
+        box=SIMPLE,
+        padding=0,
+        title="RMS of recorded minus planned: paper's defaults → calibrated",
+    )
     table.add_column("recording", overflow="fold")
     for name in ("speed", "steps", *SHOWN):
         table.add_column(name, justify="right", no_wrap=True)

@@ -52,6 +52,7 @@ def run(args: argparse.Namespace) -> int:
 
     recording = _load(args)
     gait = analyse(recording)
+    _warn(recording, gait)
     options = host_arguments(load_config(args))
     spec = args.can or private_udp()
     lcm = ["--lcm=none"] if args.clock == "lockstep" else []
@@ -76,6 +77,24 @@ def _load(args: argparse.Namespace) -> "Recording":
     from saddlewalk.recording import load_recording
 
     return load_recording(args.trial)
+
+
+def _warn(recording: "Recording", gait: "Gait") -> None:
+    """A line for what no human walk has: the firmware takes any, and this is most often a unit."""
+    from saddlewalk.walk_measures import inhuman
+
+    for quantity, value in (
+        ("walking speed", gait.speed_m_s),
+        ("step length", gait.step_length_m),
+        ("step width", gait.step_width_m),
+    ):
+        told = None if math.isnan(value) else inhuman(quantity, value)
+        if told:
+            print(
+                f"saddlewalk replay: {recording.source}: {told}; t in s, markers in m, "
+                "x forward, y to the left?",
+                file=sys.stderr,
+            )
 
 
 def score_row(time_s: float, scores: dict[str, float]) -> list:
