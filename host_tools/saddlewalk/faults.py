@@ -282,7 +282,7 @@ def read_scenario(path: Path) -> Scenario:
     try:
         tables = tomllib.loads(path.read_text())
     except OSError as error:
-        raise UserError(f"--scenario {path}: {error.strerror}") from error
+        raise UserError(f"{path}: {error.strerror}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise UserError(f"{path}: not TOML: {error}") from error
     top = _Table(str(path), tables, {"walk", "fault"})
@@ -339,7 +339,9 @@ class _Table:
 
     def numbers(self, name: str, low: float, high: float) -> list[float]:
         """One or more."""
-        value = self._table.get(name)
+        if name not in self._table:
+            raise UserError(f"{self._where}: no {name}: give it in {low:g} to {high:g}")
+        value = self._table[name]
         values = value if isinstance(value, list) else [value]
         good = values and all(
             isinstance(one, int | float) and not isinstance(one, bool) and low <= one <= high

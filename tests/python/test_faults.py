@@ -144,7 +144,7 @@ FAULT = '[[fault]]\nclass = "loss"\nstrength = 0.5\nfrom_s = 1\nfor_s = 2\n'
 @pytest.mark.parametrize(
     ("text", "named"),
     [
-        (FAULT, "[walk]: speed_m_s = None must be in 0.1 to 2"),
+        (FAULT, "[walk]: no speed_m_s: give it in 0.1 to 2"),
         (WALK, "give at least one [[fault]]"),
         (WALK + FAULT.replace('"loss"', '"lost"'), "[[fault]] 1: class = 'lost' must be one of"),
         (WALK + FAULT.replace("0.5", "1.5"), "[[fault]] 1: strength = 1.5 must be in 0 to 1"),
