@@ -52,7 +52,13 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--picture", metavar="FILE", help="with --schedule: draw the walk, as PNG, SVG or PDF"
     )
-    parser.add_argument("--dt", type=number_in(SHORTEST_DT_S, 1e4, "s"), default=0.08, metavar="S")
+    parser.add_argument(
+        "--dt",
+        type=number_in(SHORTEST_DT_S, 1e4, "s"),
+        default=0.08,
+        metavar="S",
+        help="time from row to row (default 0.08)",
+    )
     parser.add_argument("--ankle", choices=ANKLES, help="ankle strategy (default erf)")
     add_body_options(parser)
     parser.add_argument("--out", metavar="FILE", help="default: standard output")
