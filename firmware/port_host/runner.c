@@ -13,13 +13,6 @@
 /** The configuration is published with every so many ticks, about once a second. */
 #define CONFIG_TICKS 12
 
-/** A session ends in good time before its freshness does: this leaves some minutes. */
-#define FRESHNESS_END 60000u
-
-/** While nobody commands there is a new one every so many ticks, about 2 s: a code that was held
- *  back is of no use for longer. */
-#define IDLE_SESSION_TICKS 25u
-
 /** The time of tick n in lockstep. */
 static uint64_t lockstep_us(const saddle_runner_t *runner)
 {
@@ -92,7 +85,7 @@ static void send_session(saddle_runner_t *runner)
 {
     const saddle_wire_receiver_t *receiver = &runner->inbox.receiver;
     saddle_frame_t frame;
-    if (receiver->guard.demanded) {
+    if (receiver->guard.opened) {
         saddle_wire_encode_session(receiver, (uint8_t)runner->timing.ticks, &frame);
         send_frame(runner, &frame);
     }
@@ -121,22 +114,13 @@ static void publish(saddle_runner_t *runner, const saddle_input_t *input,
     saddle_lcm_publish(runner->lcm, input, output, &status, &health);
 }
 
-/** Without a number that cannot be foretold, the session before goes on. */
+/** Without a number that cannot be foretold there is no new one, and the next tick tries again. */
 static void open_session(saddle_runner_t *runner)
 {
     uint32_t session;
     if (getrandom(&session, sizeof session, GRND_NONBLOCK) == (ssize_t)sizeof session) {
         saddle_wire_open_session(&runner->inbox.receiver, session);
     }
-}
-
-/** Whoever commands next may be new, and counts from 1. */
-static bool is_session_over(const saddle_runner_t *runner, const saddle_output_t *output)
-{
-    const uint16_t freshness = runner->inbox.receiver.guard.freshness;
-    const bool stale = (output->faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) != 0u;
-    const bool renewed = runner->timing.ticks % IDLE_SESSION_TICKS == IDLE_SESSION_TICKS - 1u;
-    return freshness >= FRESHNESS_END || (stale && (freshness > 0u || renewed));
 }
 
 /** Nobody commands any more, and the walk that was commanded has come to its end. */
@@ -151,7 +135,7 @@ static void tick(saddle_runner_t *runner, uint64_t time_us)
     saddle_output_t output;
     const saddle_input_t *input = saddle_inbox_read(&runner->inbox, time_us);
     (void)saddle_tick(&runner->context, input, &output); /* the status is part of the output */
-    if (is_session_over(runner, &output)) {
+    if (saddle_wire_session_is_over(&runner->inbox.receiver, &output, runner->timing.ticks)) {
         open_session(runner);
     }
     send_session(runner);

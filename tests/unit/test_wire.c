@@ -278,6 +278,50 @@ static void test_process_bytes(void)
     }
 }
 
+static const uint8_t KEY[SADDLE_CMAC_LENGTH] = {1, 2, 3};
+
+/** A COMMAND under a code; whether it is obeyed. */
+static bool obeys(uint32_t session, uint16_t freshness)
+{
+    saddle_cmac_key_t prepared;
+    saddle_frame_t code;
+    const saddle_frame_t command = command_frame((uint8_t)freshness);
+    saddle_cmac_prepare(&prepared, KEY);
+    saddle_wire_encode_code(&prepared, session, freshness, &command, &code);
+    (void)accept(&code);
+    return accept(&command) == SADDLE_WIRE_COMMAND;
+}
+
+static void test_before_a_session_no_code_is_good(void)
+{
+    saddle_wire_demand_codes(&receiver, KEY);
+    TEST_ASSERT_FALSE(obeys(0, 1));
+    TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_code);
+    saddle_wire_open_session(&receiver, 0);
+    TEST_ASSERT_TRUE(obeys(0, 2));
+    TEST_ASSERT_FALSE(obeys(1, 3));
+}
+
+static void test_when_a_session_is_over(void)
+{
+    const saddle_output_t commanded = {.status = SADDLE_OK};
+    const saddle_output_t idle = {.faults = SADDLE_FAULT_COMMAND_STALE};
+    TEST_ASSERT_FALSE(saddle_wire_session_is_over(&receiver, &idle, 24));
+    saddle_wire_demand_codes(&receiver, KEY);
+    TEST_ASSERT_TRUE(saddle_wire_session_is_over(&receiver, &commanded, 0));
+    saddle_wire_open_session(&receiver, 7);
+    for (uint32_t tick = 0; tick < 50; ++tick) {
+        TEST_ASSERT_FALSE(saddle_wire_session_is_over(&receiver, &commanded, tick));
+        TEST_ASSERT_EQUAL(tick == 24 || tick == 49,
+                          saddle_wire_session_is_over(&receiver, &idle, tick));
+    }
+    TEST_ASSERT_TRUE(obeys(7, 59999));
+    TEST_ASSERT_FALSE(saddle_wire_session_is_over(&receiver, &commanded, 0));
+    TEST_ASSERT_TRUE(saddle_wire_session_is_over(&receiver, &idle, 0));
+    TEST_ASSERT_TRUE(obeys(7, 60000));
+    TEST_ASSERT_TRUE(saddle_wire_session_is_over(&receiver, &commanded, 0));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -295,5 +339,7 @@ int main(void)
     RUN_TEST(test_judgement_bytes);
     RUN_TEST(test_what_was_not_compared_has_no_numbers);
     RUN_TEST(test_process_bytes);
+    RUN_TEST(test_before_a_session_no_code_is_good);
+    RUN_TEST(test_when_a_session_is_over);
     return UNITY_END();
 }

@@ -9,6 +9,13 @@
 #define COUNTER_STEP_MAX 4u
 #define AGE_MAX_MS 4095u
 
+/** A session ends in good time before its freshness does: this leaves some minutes. */
+#define FRESHNESS_END 60000u
+
+/** While nobody commands there is a new one every so many ticks, 2 s: a code that was held back is
+ *  of no use for longer. */
+#define IDLE_SESSION_TICKS 25u
+
 /** Raw value of a number: the scale is the generated codec's, and the ends of the range follow. */
 #define RAW(signal, valid, value)                                                                \
     ((valid) && is_finite(value)                                                                 \
@@ -160,7 +167,7 @@ static bool is_authentic(saddle_wire_guard_t *guard, const uint8_t *command)
     }
     guard->waits = false;
     (void)saddle_can_command_code_unpack(&told, guard->frame, SADDLE_WIRE_LENGTH);
-    if (told.freshness <= guard->freshness ||
+    if (!guard->opened || told.freshness <= guard->freshness ||
         told.code != code_of(&guard->key, guard->session, told.freshness, command)) {
         return false;
     }
@@ -461,9 +468,21 @@ void saddle_wire_demand_codes(saddle_wire_receiver_t *receiver,
 
 void saddle_wire_open_session(saddle_wire_receiver_t *receiver, uint32_t session)
 {
+    receiver->guard.opened = true;
     receiver->guard.session = session;
     receiver->guard.freshness = 0;
     receiver->guard.waits = false;
+}
+
+/** Whoever commands next may be new, and counts from 1. */
+bool saddle_wire_session_is_over(const saddle_wire_receiver_t *receiver,
+                                 const saddle_output_t *output, uint32_t ticks)
+{
+    const saddle_wire_guard_t *guard = &receiver->guard;
+    const bool stale = (output->faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) != 0u;
+    const bool renewed = ticks % IDLE_SESSION_TICKS == IDLE_SESSION_TICKS - 1u;
+    return guard->demanded && (!guard->opened || guard->freshness >= FRESHNESS_END ||
+                               (stale && (guard->freshness > 0u || renewed)));
 }
 
 void saddle_wire_encode_session(const saddle_wire_receiver_t *receiver, uint8_t counter,

@@ -85,6 +85,7 @@ typedef struct {
 /** What a COMMAND must be vouched for with, docs/authentication.md. */
 typedef struct {
     bool demanded;
+    bool opened; /**< a session; before the first no code is good */
     saddle_cmac_key_t key;
     uint32_t session;   /**< a code is good in its session alone */
     uint16_t freshness; /**< of the last good code; the next must be higher */
@@ -122,16 +123,21 @@ uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH]);
 saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint32_t id,
                                          const uint8_t *data, size_t length);
 
-/** From now on accept a COMMAND only after a COMMAND_CODE that vouches for it. */
+/** From now on accept a COMMAND only after a COMMAND_CODE that vouches for it: none before the first
+ *  saddle_wire_open_session(). */
 void saddle_wire_demand_codes(saddle_wire_receiver_t *receiver,
                               const uint8_t key[SADDLE_CMAC_LENGTH]);
 
 /** Begin a session with a number that cannot be foretold; freshness begins anew. Codes of the
- *  session before are refused. At the start, when commands have ceased, and in good time before
- *  the freshness reaches its end. */
+ *  session before are refused. When: saddle_wire_session_is_over(). */
 void saddle_wire_open_session(saddle_wire_receiver_t *receiver, uint32_t session);
 
-/** SESSION, for those who command; with every tick while codes are demanded. */
+/** Whether a tick is to open a new session: there is none, the freshness nears its end, or nobody
+ *  commands. output: the tick's; ticks: how many came before it. Never while no codes are demanded. */
+bool saddle_wire_session_is_over(const saddle_wire_receiver_t *receiver,
+                                 const saddle_output_t *output, uint32_t ticks);
+
+/** SESSION, for those who command; with every tick while there is a session. */
 void saddle_wire_encode_session(const saddle_wire_receiver_t *receiver, uint8_t counter,
                                 saddle_frame_t *frame);
 
