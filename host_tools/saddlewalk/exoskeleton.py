@@ -93,6 +93,7 @@ class Exoskeleton:
     """Sends the wearer's measurements, follows the plan that comes back, publishes the truth.
 
     A walk in progress is ended first: the own one begins when the firmware plans to stand.
+    if_silent: what the user can do when no firmware answers.
     """
 
     def __init__(
@@ -102,6 +103,7 @@ class Exoskeleton:
         schedule: Schedule,
         lcm: Any = None,
         observers: Iterable[Observer] = (),
+        if_silent: str = "",
     ) -> None:
         self.reader = TickReader()
         self.frames_sent = 0
@@ -110,6 +112,7 @@ class Exoskeleton:
         self.mode: int | None = None  # of the newest plan; None without one
         self._bus, self._lcm, self._wearer, self._schedule = bus, lcm, wearer, schedule
         self._observers = tuple(observers)
+        self._if_silent = if_silent
         self._sender = Sender()
         self._begun = False
         self._unheeded = 0  # ticks in a row
@@ -153,10 +156,8 @@ class Exoskeleton:
         self._publish_command()
 
     def _silent(self) -> UserError:
-        return UserError(
-            f"the firmware has been silent for {SILENCE_S:g} s on {self._bus.channel_info}: "
-            "start saddlewalk-host there with the same --clock and --lcm"
-        )
+        silent = f"the firmware has been silent for {SILENCE_S:g} s on {self._bus.channel_info}"
+        return UserError(": ".join(filter(None, [silent, self._if_silent])))
 
     def _exchange(self) -> Messages:
         """Send what is measured and wait for the firmware's tick.

@@ -1,5 +1,6 @@
 """The firmware on an emulated controller, `firmware/port_mcu`, and the line that leads to it."""
 
+import contextlib
 import itertools
 import math
 import re
@@ -13,7 +14,7 @@ import can
 import pytest
 
 from host_node import MESSAGES_PER_TICK, STANDING, WALK, own_lcm
-from saddlewalk import qemu
+from saddlewalk import exoskeleton, qemu
 from saddlewalk.bus import private_udp
 from saddlewalk.cli import main
 from saddlewalk.config import configuration
@@ -137,6 +138,21 @@ def test_a_configuration_that_saddle_init_refuses_is_told():
         qemu.running_controller(configuration({"body_mass_kg": math.nan})),
     ):
         pass
+
+
+def test_a_controller_that_is_silent_is_told_without_advice_for_the_host(
+    tmp_path, monkeypatch, capsys, line
+):
+    @contextlib.contextmanager
+    def silent(config):
+        yield qemu.Controller(line[0])
+
+    monkeypatch.setattr(qemu, "running_controller", silent)
+    monkeypatch.setattr(exoskeleton, "SILENCE_S", 0.2)
+    assert demo(tmp_path / "out", "--firmware", "qemu-m4") == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1 and "silent for 0.2 s on a line" in told
+    assert "saddlewalk-host" not in told
 
 
 def test_what_is_missing_is_named(tmp_path, monkeypatch, capsys):

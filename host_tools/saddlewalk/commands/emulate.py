@@ -112,7 +112,8 @@ def run(args: argparse.Namespace) -> int:
         print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
         events = events_printer(wearer)
         ways = faulty(bus, lcm, happenings, args.seed) if happenings else (bus, lcm)
-        exoskeleton = Exoskeleton(ways[0], wearer, schedule, ways[1], [events])
+        start = "start saddlewalk-host there with the same --clock and --lcm"
+        exoskeleton = Exoskeleton(ways[0], wearer, schedule, ways[1], [events], start)
         exoskeleton.run(args.clock, args.duration)
     print(summary(wearer, exoskeleton))
     return 1 if wearer.fallen else 0
