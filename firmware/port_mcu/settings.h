@@ -5,14 +5,21 @@
 
 #include <saddlewalk/saddlewalk.h>
 
-/** "SDL1", little endian: the first word of a page that was written. */
-#define SADDLE_SETTINGS_MAGIC 0x314C4453u
+/** The page, in words: saddle_settings_crc(); 1 for lockstep, else 0; saddle_ankle_t; then as floats
+ *  all fields of saddle_config_field(), in its order. */
+enum {
+    SADDLE_SETTINGS_CRC = 0,
+    SADDLE_SETTINGS_LOCKSTEP = 1,
+    SADDLE_SETTINGS_ANKLE = 2,
+    SADDLE_SETTINGS_FIELDS = 3
+};
 
-/** The page, in words: the magic; 1 for lockstep, else 0; saddle_ankle_t; then as floats all fields
- *  of saddle_config_field(), in its order. */
-enum { SADDLE_SETTINGS_LOCKSTEP = 1, SADDLE_SETTINGS_ANKLE = 2, SADDLE_SETTINGS_FIELDS = 3 };
+/** CRC-32, zlib's, over the names of the fields, each with its '\0', and the words after the first:
+ *  so it vouches for the values and for whose they are. */
+uint32_t saddle_settings_crc(const uint32_t *page);
 
-/** Read a page; without the magic nothing is changed. saddle_init() judges the values. */
-void saddle_settings_read(const uint32_t *page, saddle_config_t *config, bool *lockstep);
+/** Read a page. False: it is damaged, was never written, or holds other fields, and nothing is
+ *  changed. saddle_init() judges the values. */
+bool saddle_settings_read(const uint32_t *page, saddle_config_t *config, bool *lockstep);
 
 #endif

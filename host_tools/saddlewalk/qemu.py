@@ -8,6 +8,7 @@ import socket
 import struct
 import subprocess
 import tempfile
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -22,8 +23,7 @@ IMAGE = CHECKOUT / "build-cortex-m4f/bin/saddlewalk-controller"
 STOP_TIMEOUT_S = 5.0
 _EMULATOR = "qemu-system-arm"
 _COMPILER = "arm-none-eabi-gcc"
-# As firmware/port_mcu/settings.h and mps2/main.c have it.
-_SETTINGS_MAGIC = 0x314C4453
+# As firmware/port_mcu/mps2/main.c has it.
 _SETTINGS_ADDRESS = 0x003FF000
 
 
@@ -39,7 +39,8 @@ class Controller:
 def running_controller(config: Any, clock: str = "lockstep") -> Iterator[Controller]:
     """Starts it with a configuration; when the block ends, its bus is closed, which ends it.
 
-    Raises UserError if something is missing, or with its last words if it failed.
+    Raises UserError if something is missing, or with its last words if it failed, whatever else
+    that led to in the block.
     """
     if problem := missing():
         raise UserError(problem)
@@ -62,17 +63,19 @@ def running_controller(config: Any, clock: str = "lockstep") -> Iterator[Control
         finally:
             controller.bus.shutdown()
             controller.words = _last_words(process)
-    if process.returncode != 0:
-        raise UserError(f"{DESCRIPTION}: {controller.words or f'status {process.returncode}'}")
+            if process.returncode != 0:
+                words = controller.words or f"status {process.returncode}"
+                raise UserError(f"{DESCRIPTION}: {words}")
 
 
 def settings_page(config: Any, clock: str) -> bytes:
-    """The page of flash with a saddle_config_t, as the controller reads it."""
+    """The page of flash with a saddle_config_t, as firmware/port_mcu/settings.h lays it down."""
     from saddlewalk.core import field_ranges
 
-    fields = [getattr(config, name) for name in field_ranges()]
-    head = struct.pack("<3I", _SETTINGS_MAGIC, clock == "lockstep", config.ankle)
-    return head + struct.pack(f"<{len(fields)}f", *fields)
+    fields = {name: getattr(config, name) for name in field_ranges()}
+    names = b"".join(name.encode() + b"\0" for name in fields)
+    values = struct.pack(f"<2I{len(fields)}f", clock == "lockstep", config.ankle, *fields.values())
+    return struct.pack("<I", zlib.crc32(names + values)) + values
 
 
 def missing() -> str:

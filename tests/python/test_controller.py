@@ -140,6 +140,22 @@ def test_a_configuration_that_saddle_init_refuses_is_told():
         pass
 
 
+@on_controller
+@pytest.mark.parametrize("bit", [0, 32 * 4 + 7])  # of the CRC, of the height
+def test_a_settings_page_with_a_flipped_bit_is_not_walked_by(tmp_path, monkeypatch, capsys, bit):
+    written = qemu.settings_page
+
+    def damaged(config, clock):
+        page = bytearray(written(config, clock))
+        page[bit // 8] ^= 1 << bit % 8
+        return bytes(page)
+
+    monkeypatch.setattr(qemu, "settings_page", damaged)
+    assert demo(tmp_path / "out", "--firmware", "qemu-m4") == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1 and "settings: the page is damaged" in told
+
+
 def test_a_controller_that_is_silent_is_told_without_advice_for_the_host(
     tmp_path, monkeypatch, capsys, line
 ):

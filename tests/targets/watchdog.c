@@ -1,6 +1,7 @@
 /** What the watchdog resets: the image of firmware/port_mcu with a saddle_tick() that misbehaves
  *  after a while, in another way after each reset. Exit status 0 once each has been reset. */
 #include <board.h>
+#include <settings.h>
 #include <timing.h>
 
 #include <inttypes.h>
@@ -21,6 +22,16 @@ saddle_status_t __real_saddle_tick(saddle_context_t *context, const saddle_input
                                    saddle_output_t *output);
 saddle_status_t __wrap_saddle_tick(saddle_context_t *context, const saddle_input_t *input,
                                    saddle_output_t *output);
+
+bool __wrap_saddle_settings_read(const uint32_t *page, saddle_config_t *config, bool *lockstep);
+
+bool __wrap_saddle_settings_read(const uint32_t *page, saddle_config_t *config, bool *lockstep)
+{
+    (void)page;
+    *config = saddle_config_default(1.79f, 63.3f);
+    *lockstep = false;
+    return true;
+}
 
 static void finish(const char *words, int status)
 {

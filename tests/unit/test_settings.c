@@ -4,58 +4,97 @@
 #include <settings.h>
 
 static uint32_t page[256];
+static size_t fields;
+static saddle_config_t before, config;
+static bool lockstep;
 
+static size_t words(void)
+{
+    return SADDLE_SETTINGS_FIELDS + fields;
+}
+
+/** In lockstep, with a rigid ankle, and each field half above its place in the list. */
 void setUp(void)
 {
     memset(page, 0xFF, sizeof page); /* as flash that was erased */
+    page[SADDLE_SETTINGS_LOCKSTEP] = 1;
+    page[SADDLE_SETTINGS_ANKLE] = SADDLE_ANKLE_RIGID;
+    for (fields = 0; saddle_config_field(fields) != NULL; ++fields) {
+        const float value = (float)fields + 0.5f;
+        memcpy(&page[SADDLE_SETTINGS_FIELDS + fields], &value, sizeof value);
+    }
+    page[SADDLE_SETTINGS_CRC] = saddle_settings_crc(page);
+    before = config = saddle_config_default(1.6f, 50.0f);
+    lockstep = false;
 }
 
 void tearDown(void) {}
 
-static float field_at(const saddle_config_t *config, size_t index)
+static float field_at(size_t index)
 {
     float value;
-    memcpy(&value, (const char *)config + saddle_config_field(index)->offset, sizeof value);
+    memcpy(&value, (const char *)&config + saddle_config_field(index)->offset, sizeof value);
     return value;
 }
 
-static void test_without_a_page_nothing_is_changed(void)
+static void expect_refused(void)
 {
-    const saddle_config_t before = saddle_config_default(1.6f, 50.0f);
-    saddle_config_t config = before;
-    bool lockstep = true;
-    saddle_settings_read(page, &config, &lockstep);
+    TEST_ASSERT_FALSE(saddle_settings_read(page, &config, &lockstep));
     TEST_ASSERT_EQUAL_MEMORY(&before, &config, sizeof config);
-    TEST_ASSERT_TRUE(lockstep);
+    TEST_ASSERT_FALSE(lockstep);
 }
 
 static void test_every_field_comes_from_the_page(void)
 {
-    saddle_config_t config = saddle_config_default(1.6f, 50.0f);
-    bool lockstep = false;
-    size_t fields = 0;
-    page[0] = SADDLE_SETTINGS_MAGIC;
-    page[SADDLE_SETTINGS_LOCKSTEP] = 1;
-    page[SADDLE_SETTINGS_ANKLE] = SADDLE_ANKLE_RIGID;
-    for (; saddle_config_field(fields) != NULL; ++fields) {
-        const float value = (float)fields + 0.5f;
-        memcpy(&page[SADDLE_SETTINGS_FIELDS + fields], &value, sizeof value);
-    }
-    saddle_settings_read(page, &config, &lockstep);
+    TEST_ASSERT_TRUE(saddle_settings_read(page, &config, &lockstep));
     TEST_ASSERT_TRUE(lockstep);
     TEST_ASSERT_EQUAL_INT(SADDLE_ANKLE_RIGID, config.ankle);
     for (size_t i = 0; i < fields; ++i) {
-        ASSERT_SAME_FLOAT((float)i + 0.5f, field_at(&config, i));
+        ASSERT_SAME_FLOAT((float)i + 0.5f, field_at(i));
     }
     page[SADDLE_SETTINGS_LOCKSTEP] = 0;
-    saddle_settings_read(page, &config, &lockstep);
+    page[SADDLE_SETTINGS_CRC] = saddle_settings_crc(page);
+    TEST_ASSERT_TRUE(saddle_settings_read(page, &config, &lockstep));
     TEST_ASSERT_FALSE(lockstep);
+}
+
+static void test_a_page_that_was_never_written_is_refused(void)
+{
+    memset(page, 0xFF, sizeof page);
+    expect_refused();
+    memset(page, 0, sizeof page);
+    expect_refused();
+}
+
+static void test_every_flipped_bit_is_refused(void)
+{
+    for (size_t bit = 0; bit < 32u * words(); ++bit) {
+        page[bit / 32u] ^= 1u << bit % 32u;
+        expect_refused();
+        page[bit / 32u] ^= 1u << bit % 32u;
+    }
+    TEST_ASSERT_TRUE(saddle_settings_read(page, &config, &lockstep));
+}
+
+/** The CRC of the words alone, as the page of a list with other names would have it. */
+static void test_the_names_of_the_fields_count(void)
+{
+    uint32_t crc = UINT32_MAX;
+    for (size_t bit = 32; bit < 32u * words(); ++bit) {
+        const uint8_t byte = ((const uint8_t *)page)[bit / 8u];
+        const uint32_t differs = (crc ^ byte >> bit % 8u) & 1u;
+        crc = crc >> 1 ^ differs * 0xEDB88320u;
+    }
+    page[SADDLE_SETTINGS_CRC] = ~crc;
+    expect_refused();
 }
 
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_without_a_page_nothing_is_changed);
     RUN_TEST(test_every_field_comes_from_the_page);
+    RUN_TEST(test_a_page_that_was_never_written_is_refused);
+    RUN_TEST(test_every_flipped_bit_is_refused);
+    RUN_TEST(test_the_names_of_the_fields_count);
     return UNITY_END();
 }

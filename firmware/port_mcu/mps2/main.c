@@ -44,10 +44,13 @@ static void report(void)
 
 int main(void)
 {
-    saddle_config_t config = saddle_config_default(1.79f, 63.3f);
-    bool lockstep = false;
+    saddle_config_t config;
+    bool lockstep;
     saddle_stack_paint(stack_lowest(), __builtin_frame_address(0));
-    saddle_settings_read(SETTINGS, &config, &lockstep);
+    if (!saddle_settings_read(SETTINGS, &config, &lockstep)) {
+        printf("settings: the page is damaged, was never written, or holds other fields\n");
+        return 1;
+    }
     const saddle_status_t status = saddle_controller_init(&controller, &config, lockstep);
     if (status != SADDLE_OK) {
         const char *bad_field = saddle_config_check(&config);
