@@ -13,11 +13,7 @@ uint64_t saddle_bench_plan_ns(saddle_context_t *context, const saddle_command_t 
                               uint32_t period_us, uint32_t instants, saddle_output_t *outputs,
                               saddle_scores_t *scores)
 {
-    saddle_input_t input = {.command = *command};
-    input.measurement.com.age_us = SADDLE_AGE_NEVER_US;
-    for (int side = 0; side < 2; side++) {
-        input.measurement.foot[side].age_us = SADDLE_AGE_NEVER_US;
-    }
+    saddle_input_t input = {.command = *command, .measurement = saddle_no_measurement()};
     input.time_us = context->last_time_us;
     const uint64_t start_ns = now_ns();
     if (saddle_join(context, command) != SADDLE_OK) {

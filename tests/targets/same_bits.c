@@ -95,9 +95,7 @@ static hash_t golden(void)
     for (size_t run = 0; run < COUNT_OF(speeds) * COUNT_OF(angles); run++) {
         saddle_input_t input = {
             .command = {SADDLE_COMMAND_WALK, speeds[run / 3u], angles[run % 3u]},
-            .measurement = {.com = {.age_us = SADDLE_AGE_NEVER_US},
-                            .foot = {{.age_us = SADDLE_AGE_NEVER_US},
-                                     {.age_us = SADDLE_AGE_NEVER_US}}},
+            .measurement = saddle_no_measurement(),
         };
         (void)saddle_init(&context, &config);
         (void)saddle_join(&context, &input.command);

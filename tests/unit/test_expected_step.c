@@ -143,7 +143,8 @@ static void test_expected_landing_is_the_plan_s_next_saddle_via_point(void)
 {
     for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
         saddle_context_t context;
-        saddle_input_t input = {.command = {SADDLE_COMMAND_WALK, SPEEDS[i], 0.1f}};
+        saddle_input_t input = {.command = {SADDLE_COMMAND_WALK, SPEEDS[i], 0.1f},
+                                .measurement = saddle_no_measurement()};
         saddle_output_t output;
         saddle_init(&context, &config);
         TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_join(&context, &input.command));

@@ -80,9 +80,7 @@ static void replay(const golden_run_t *run)
         const saddle_input_t input = {
             .time_us = row->time_us,
             .command = command,
-            .measurement = {.com = {.age_us = SADDLE_AGE_NEVER_US},
-                            .foot = {{.age_us = SADDLE_AGE_NEVER_US},
-                                     {.age_us = SADDLE_AGE_NEVER_US}}},
+            .measurement = saddle_no_measurement(),
         };
         TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_tick(&context, &input, &output));
         assert_plan(run->name, row, &output.plan);

@@ -11,6 +11,7 @@ static const float DT_S = 0.08f;
 
 static saddle_config_t config;
 static saddle_watch_t watch;
+static float planned_m_s;
 static saddle_measurement_t measured;
 
 /* Mid-step, both feet down, CoM a little behind the middle. */
@@ -32,13 +33,14 @@ void setUp(void)
     config.crossing_max_m = 0.15f;
     memset(&watch, 0, sizeof watch);
     measured = good_measurement();
+    planned_m_s = 0.0f;
 }
 
 void tearDown(void) {}
 
 static uint32_t judge(void)
 {
-    return saddle_judge(&watch, &config, &measured, DT_S);
+    return saddle_judge(&watch, &config, &measured, planned_m_s, DT_S);
 }
 
 /* Of this measurement alone. */
@@ -250,6 +252,24 @@ static void test_standing_still_without_noise_is_not_frozen(void)
 }
 
 /* Swinging feet move over the ground: they say nothing about the CoM. */
+/* Sensors that froze before the walk began contradict nothing but the plan: 2 cm of it. */
+static void test_com_that_stands_still_under_a_planned_walk_is_frozen(void)
+{
+    static const float speeds_m_s[] = {0.06f, 0.3f, 1.2f};
+    for (size_t i = 0; i < COUNT_OF(speeds_m_s); i++) {
+        setUp();
+        config.com_max_age_s = 0.2f;
+        measured.com.velocity_m_s = (saddle_vec2_t){0.0f, 0.0f};
+        planned_m_s = speeds_m_s[i];
+        for (int tick = 0; tick < 12; tick++) { /* 0.24 s after the first, and 2 cm */
+            const bool frozen = tick >= 3 && (float)tick * DT_S * planned_m_s > 0.02f;
+            TEST_ASSERT_EQUAL_HEX32(frozen ? SADDLE_FAULT_COM_FROZEN : 0u, judge());
+        }
+        measured.com.velocity_m_s.x = 0.01f;
+        TEST_ASSERT_EQUAL_HEX32(0, judge());
+    }
+}
+
 static void test_feet_in_the_air_do_not_make_the_com_frozen(void)
 {
     measured.foot[SADDLE_RIGHT].contact = false;
@@ -517,6 +537,7 @@ int main(void)
     RUN_TEST(test_com_whose_height_changes_is_alive);
     RUN_TEST(test_constant_speed_that_the_feet_agree_with_is_not_frozen);
     RUN_TEST(test_standing_still_without_noise_is_not_frozen);
+    RUN_TEST(test_com_that_stands_still_under_a_planned_walk_is_frozen);
     RUN_TEST(test_feet_in_the_air_do_not_make_the_com_frozen);
     RUN_TEST(test_walk_at_a_constant_speed_is_not_frozen);
     RUN_TEST(test_com_that_freezes_in_a_walk_stays_frozen_until_it_changes);

@@ -578,12 +578,52 @@ static void test_feet_that_no_walk_can_start_from_are_said(void)
         ASSERT_SAME_FLOAT(0.11f, plan.foot_m[SADDLE_LEFT].y); /* the default feet */
     }
     stand(1.0f);
-    measure(1.0f, 0.1f, 0.0f, -0.1f);
-    feet.contact[SADDLE_RIGHT] = false; /* in the air: no stance to start from, none refused */
+    measure(0.0f, 0.1f, 0.0f, -0.1f);
+    feet.contact[SADDLE_RIGHT] = false; /* in the air: no stance to start from */
+    for (int k = 0; k < 20; k++) {
+        TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_FEET, tick(80000));
+        TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STANDING, plan.mode);
+    }
+    feet.contact[SADDLE_RIGHT] = true;
     TEST_ASSERT_EQUAL_HEX32(0, tick(80000));
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STARTING, plan.mode);
 }
 
-/* Walk in ms until the next landing; then its measurement, shifted, with the rear foot at the origin. */
+/* The planned landing as it is measured, shifted, with the rear foot at the origin. */
+static void land_there(float dx, float dy)
+{
+    feet = (saddle_feet_t){.known = true, .contact = {true, true}};
+    feet.cop_m[plan.support] = (saddle_vec2_t){planner.cycle.last_step_m.x + dx,
+                                               planner.cycle.last_step_m.y + dy};
+}
+
+/* The last step lands up to 0.3 m short: what is left of the way may be too short to brake on. */
+static void test_short_landing_does_not_stop_the_plan_at_once(void)
+{
+    static const float rates_m_s2[] = {0.5f, 2.0f};
+    int refused = 0;
+    for (int i = 0; i < 2 * 15 * 16; i += EVERY(7)) {
+        const float rate_m_s2 = rates_m_s2[i % 2];
+        config.acceleration_m_s2 = rate_m_s2;
+        join(0.3f + 0.1f * (float)(i / 2 % 15));
+        command.mode = SADDLE_COMMAND_STAND;
+        float last_m_s = plan.speed_m_s;
+        uint32_t steps = plan.step_count;
+        while (plan.mode != (uint8_t)SADDLE_MODE_STANDING) {
+            feet.known = plan.step_count != steps;
+            if (feet.known) {
+                land_there(-0.02f * (float)(i / 30), 0.0f);
+            }
+            steps = plan.step_count;
+            refused += (tick(80000) & (uint32_t)SADDLE_LIMIT_FEET) != 0u ? 1 : 0;
+            TEST_ASSERT_TRUE(last_m_s - plan.speed_m_s < 1.001f * 0.08f * rate_m_s2 + 1e-6f);
+            last_m_s = plan.speed_m_s;
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_INT(MANY(20), refused);
+}
+
+/* Walk in ms until the next landing; then its measurement. */
 static void land_shifted(float dx, float dy)
 {
     const uint32_t steps = plan.step_count;
@@ -591,9 +631,7 @@ static void land_shifted(float dx, float dy)
     while (plan.step_count == steps) {
         tick(1000);
     }
-    feet = (saddle_feet_t){.known = true, .contact = {true, true}};
-    feet.cop_m[plan.support] = (saddle_vec2_t){planner.cycle.last_step_m.x + dx,
-                                               planner.cycle.last_step_m.y + dy};
+    land_there(dx, dy);
 }
 
 static void test_misplaced_landing_is_where_the_next_step_starts(void)
@@ -822,6 +860,7 @@ int main(void)
     RUN_TEST(test_start_stands_then_shifts_then_steps);
     RUN_TEST(test_measured_feet_give_the_nearest_phase);
     RUN_TEST(test_feet_that_no_walk_can_start_from_are_said);
+    RUN_TEST(test_short_landing_does_not_stop_the_plan_at_once);
     RUN_TEST(test_misplaced_landing_is_where_the_next_step_starts);
     RUN_TEST(test_landing_that_no_step_can_follow_is_said_and_not_used);
     RUN_TEST(test_landing_is_taken_over_early_with_both_feet_on_the_ground_only);

@@ -201,7 +201,7 @@ static void test_late_tick_advances_by_tick_max_and_says_so(void)
 {
     const uint64_t gaps[] = {200001, 1000000, 0xFFFFFFFFu, 0x100000000u, 0x100000000u + 80000u,
                              UINT64_MAX};
-    input.measurement.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
+    input.measurement = saddle_no_measurement();
     for (size_t i = 0; i < COUNT_OF(gaps); i++) {
         saddle_init(&context, &config);
         join();
@@ -321,8 +321,7 @@ static void test_planned_walk_has_the_paper_s_stability(void)
         int count = 0;
         saddle_init(&context, &config);
         input.command.speed_m_s = table[i].speed;
-        input.measurement.com.age_us = SADDLE_AGE_NEVER_US;
-        input.measurement.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
+        input.measurement = saddle_no_measurement();
         join();
         prefill();
         output.plan.stride_count = 0;
@@ -637,7 +636,7 @@ static void test_plan_at_is_the_next_tick_s_plan_to_the_bit(void)
 {
     uint32_t state = 47;
     uint64_t t = 1000000;
-    input.measurement.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
+    input.measurement = saddle_no_measurement();
     for (int i = 0; i < MANY(20000); i++) {
         if (i % 50 == 0) {
             config.ankle = (saddle_ankle_t)(random_bits(&state) % (uint32_t)SADDLE_ANKLE_COUNT);
@@ -666,7 +665,7 @@ static void test_plan_at_is_the_next_tick_s_plan_to_the_bit(void)
 
 static void test_plan_at_of_a_steady_walk_is_the_next_tick_s_in_every_field(void)
 {
-    input.measurement.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
+    input.measurement = saddle_no_measurement();
     join();
     tick_at(0);
     for (uint64_t t = 80000; t < 8000000u; t += 80000u) {
@@ -740,7 +739,7 @@ static void test_scores_of_a_plan_need_a_context_and_a_plan(void)
 
 static void test_joined_walk_goes_on_without_a_usable_command(void)
 {
-    input.measurement.com.age_us = SADDLE_AGE_NEVER_US;
+    input.measurement = saddle_no_measurement();
     input.command.speed_m_s = 0.05f;
     join();
     input.command.speed_m_s = NAN;
@@ -780,15 +779,37 @@ static uint64_t walk_for_a_while(void)
 {
     uint64_t time_us = 0;
     setUp();
-    input.measurement.com.age_us = SADDLE_AGE_NEVER_US;
+    input.measurement = saddle_no_measurement();
     join();
     tick_at(0);
-    input.measurement.com.age_us = 0;
+    input.measurement = good_measurement();
     follow_until(&time_us, 3000000u);
     TEST_ASSERT_EQUAL_HEX32(0, output.faults);
     TEST_ASSERT_EQUAL_HEX32(0, output.limits);
     TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_WALKING, output.plan.mode);
     return time_us;
+}
+
+static void test_gap_between_the_ticks_ends_the_level_and_the_walk(void)
+{
+    uint64_t t = walk_for_a_while();
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_LEVEL_STABLE, output.verdict.level);
+    t += 10000000u;
+    tick_at(t);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_LEVEL_UNKNOWN, output.verdict.level);
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_TICK_GAP | SADDLE_LIMIT_SAFE_STOP, output.limits);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STOPPING, output.plan.mode);
+}
+
+/* The CoM is lost in a walk: its scores end with it, at once. */
+static void test_step_scores_end_with_the_com(void)
+{
+    uint64_t t = walk_for_a_while();
+    TEST_ASSERT_BITS_HIGH(SADDLE_VALID_STEP, output.scores.valid);
+    input.measurement.com.age_us = SADDLE_AGE_NEVER_US;
+    follow_until(&t, t + 1u);
+    TEST_ASSERT_BITS_LOW(SADDLE_VALID_STEP, output.scores.valid);
+    TEST_ASSERT_FALSE(output.scores.paper_stable);
 }
 
 /* ---- the plan as the wearer's reference ---------------------------------------------------- */
@@ -932,9 +953,7 @@ static void test_walk_goes_on_only_after_the_inputs_were_good_for_resume_time(vo
 
 static void test_plan_that_was_never_given_measurements_walks_on(void)
 {
-    input.measurement.com.age_us = SADDLE_AGE_NEVER_US;
-    input.measurement.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
-    input.measurement.foot[SADDLE_RIGHT].age_us = SADDLE_AGE_NEVER_US;
+    input.measurement = saddle_no_measurement();
     join();
     for (uint64_t t = 0; t < 60000000u; t += 80000u) {
         tick_at(t);
@@ -974,6 +993,8 @@ int main(void)
     RUN_TEST(test_command_that_stays_unusable_stops_the_walk);
     RUN_TEST(test_age_of_the_last_usable_command_counts);
     RUN_TEST(test_walk_goes_on_only_after_the_inputs_were_good_for_resume_time);
+    RUN_TEST(test_gap_between_the_ticks_ends_the_level_and_the_walk);
+    RUN_TEST(test_step_scores_end_with_the_com);
     RUN_TEST(test_plan_that_was_never_given_measurements_walks_on);
     return UNITY_END();
 }

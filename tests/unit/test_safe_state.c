@@ -147,6 +147,34 @@ static void test_measurements_that_never_came_are_not_needed(void)
 }
 
 /* But a command is: without one nobody steers. */
+/* A sensor that is dead from the first tick is as lost as one that dies later. */
+static void test_measurement_of_which_a_part_never_came_stops(void)
+{
+    static const uint32_t parts[] = {SADDLE_FAULT_COM_STALE, SADDLE_FAULT_LEFT_STALE,
+                                     SADDLE_FAULT_RIGHT_STALE,
+                                     SADDLE_FAULT_COM_STALE | SADDLE_FAULT_LEFT_STALE};
+    for (size_t i = 0; i < COUNT_OF(parts); i++) {
+        setUp();
+        TEST_ASSERT_TRUE(update(parts[i]));
+    }
+    setUp();
+    for (int tick = 0; tick < 5; tick++) { /* out of range from the first tick: 0.24 s */
+        TEST_ASSERT_EQUAL(tick >= 3, update(SADDLE_FAULT_LEFT_RANGE));
+    }
+}
+
+static void test_gap_between_the_ticks_stops_if_measurements_are_older_than_allowed(void)
+{
+    saddle_safe_state_gap(&state, &config, 10.0f);
+    TEST_ASSERT_FALSE(update(0)); /* none had ever come */
+    saddle_safe_state_gap(&state, &config, 0.23f);
+    TEST_ASSERT_FALSE(update(0));
+    saddle_safe_state_gap(&state, &config, 0.25f);
+    for (int tick = 1; tick <= 14; tick++) { /* 13 ticks are 1.04 s */
+        TEST_ASSERT_EQUAL(tick < 13, update(0));
+    }
+}
+
 static void test_stale_command_stops_a_planner_alone_too(void)
 {
     const uint32_t never =
@@ -172,6 +200,8 @@ int main(void)
     RUN_TEST(test_time_to_go_on_begins_anew_with_every_fault);
     RUN_TEST(test_without_a_resume_time_the_first_good_tick_goes_on);
     RUN_TEST(test_measurements_that_never_came_are_not_needed);
+    RUN_TEST(test_measurement_of_which_a_part_never_came_stops);
+    RUN_TEST(test_gap_between_the_ticks_stops_if_measurements_are_older_than_allowed);
     RUN_TEST(test_stale_command_stops_a_planner_alone_too);
     return UNITY_END();
 }

@@ -234,13 +234,18 @@ static void test_step_with_a_gap_in_the_velocity_gives_no_v_comp(void)
     }
 }
 
+static void strike_without(saddle_side_t side, uint32_t faults)
+{
+    measured.foot[side].contact = false;
+    track();
+    track();
+    measured.foot[side].contact = true;
+    track_for(DT_S, faults);
+}
+
 static void test_step_that_begins_without_a_velocity_gives_no_v_comp(void)
 {
-    measured.foot[SADDLE_LEFT].contact = false;
-    track();
-    track();
-    measured.foot[SADDLE_LEFT].contact = true;
-    track_for(DT_S, SADDLE_FAULT_COM_STALE);
+    strike_without(SADDLE_LEFT, SADDLE_FAULT_COM_STALE);
     strike_with(SADDLE_RIGHT);
     TEST_ASSERT_FALSE(tracker.v_comp_known);
 }
@@ -253,6 +258,18 @@ static void test_step_over_a_gap_between_the_ticks_gives_no_v_comp(void)
     TEST_ASSERT_FALSE(tracker.v_comp_known);
     strike_with(SADDLE_LEFT);
     TEST_ASSERT_TRUE(tracker.v_comp_known);
+}
+
+/* A step that could not be measured is the last one all the same: what was before it is old. */
+static void test_strike_that_cannot_be_measured_ends_what_was_known(void)
+{
+    strike_with(SADDLE_LEFT);
+    strike_with(SADDLE_RIGHT);
+    strike_without(SADDLE_LEFT, SADDLE_FAULT_COM_STALE);
+    TEST_ASSERT_FALSE(tracker.v_comp_known);
+    TEST_ASSERT_TRUE(tracker.half_step_known);
+    strike_without(SADDLE_RIGHT, SADDLE_FAULT_LEFT_STALE);
+    TEST_ASSERT_FALSE(tracker.half_step_known);
 }
 
 /* ---- forgetting ---------------------------------------------------------------------------- */
@@ -437,6 +454,7 @@ int main(void)
     RUN_TEST(test_step_with_a_gap_in_the_velocity_gives_no_v_comp);
     RUN_TEST(test_step_that_begins_without_a_velocity_gives_no_v_comp);
     RUN_TEST(test_step_over_a_gap_between_the_ticks_gives_no_v_comp);
+    RUN_TEST(test_strike_that_cannot_be_measured_ends_what_was_known);
     RUN_TEST(test_last_step_is_forgotten_after_step_time_max);
     RUN_TEST(test_step_is_forgotten_also_while_nothing_is_measured);
     RUN_TEST(test_step_is_forgotten_over_a_long_gap_between_the_ticks);

@@ -64,7 +64,7 @@ static uint32_t update_with(uint32_t faults)
 static uint32_t update(void)
 {
     memset(&supervisor.watch, 0, sizeof supervisor.watch);
-    return update_with(saddle_judge(&supervisor.watch, &config, &measured, DT_S));
+    return update_with(saddle_judge(&supervisor.watch, &config, &measured, 0.0f, DT_S));
 }
 
 static const uint32_t UNTIL_STEP = (uint32_t)SADDLE_VALID_ALL & ~(uint32_t)SADDLE_VALID_STEP;

@@ -104,7 +104,8 @@ static int walk_an_hour(const saddle_config_t *config, double speed, differences
     static saddle_context_t context;
     saddle_input_t input = {.command = {.mode = SADDLE_COMMAND_WALK,
                                         .speed_m_s = (float)speed,
-                                        .heel_strike_rad = 0.1745f}};
+                                        .heel_strike_rad = 0.1745f},
+                            .measurement = saddle_no_measurement()};
     saddle_output_t output;
     const steady_t walk = steady_walk(config, &input.command);
     differences_t largest = {0.0, 0.0, 0.0};

@@ -222,7 +222,8 @@ int check_day(void)
     uint64_t random = 20261122u;
     saddle_input_t input = {.command = {.mode = SADDLE_COMMAND_WALK,
                                         .speed_m_s = 1.2f,
-                                        .heel_strike_rad = 0.1745f}};
+                                        .heel_strike_rad = 0.1745f},
+                            .measurement = saddle_no_measurement()};
     saddle_output_t output;
     twin_t twin = joined_twin(&config, (double)input.command.speed_m_s);
     uint64_t next_us = 0;

@@ -713,6 +713,7 @@ static int run_schedule(uint64_t seed)
 {
     static walk_t walk;
     walk = (walk_t){.seed = seed, .random = seed * 0x9E3779B97F4A7C15u};
+    walk.input.measurement = saddle_no_measurement();
     random_bits(&walk.random);
     walk.config = random_config(&walk);
     if (saddle_init(&walk.context, &walk.config) != SADDLE_OK) {

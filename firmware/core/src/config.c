@@ -35,7 +35,7 @@ static const saddle_config_field_t FIELDS[] = {
     FIELD(step_width_factor_left, 0.5f, 2.0f),
     FIELD(step_width_factor_right, 0.5f, 2.0f),
     FIELD(swing_clearance_m, 0.0f, 0.3f),
-    FIELD(tick_max_s, 0.001f, 0.25f),
+    FIELD(tick_max_s, 0.08f, 0.25f),
     FIELD(command_max_age_s, 0.001f, 3600.0f),
     FIELD(lost_inputs_stop, 0.0f, 1.0f),
     FIELD(resume_time_s, 0.0f, 60.0f),

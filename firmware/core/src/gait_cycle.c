@@ -283,6 +283,7 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_config_t *conf
     cycle->position += way;
     if (!saddle_cycle_before_landing(cycle) && cycle->position > 0) {
         cycle->position = 0; /* a last swing stays beside the stance foot */
+        cycle->profile.speed = 0;
     }
     return 0;
 }
@@ -341,6 +342,14 @@ static void redirect_swing(saddle_cycle_t *cycle, const saddle_config_t *config,
     swing->offset_m.y = (foot_m.y - swing->line_y_m) / fade;
 }
 
+/* A last swing that ends after a way of way_m comes to rest no harder than allowed. */
+static bool can_brake(const saddle_cycle_t *cycle, const saddle_config_t *config, float way_m)
+{
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    return !cycle->last_swing ||
+           speed_m_s * speed_m_s <= 2.0f * config->acceleration_m_s2 * way_m;
+}
+
 bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
                        const saddle_body_t *body, saddle_vec2_t step_m)
 {
@@ -356,7 +365,8 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
         air_after_landing(cycle, old_x_m) > LANDING_AIR_MAX ||
         x_m < LANDING_STRETCH_MAX * old_x_m ||
         length_m > larger(body->half_step_max_m, cycle->quarter.length_m) ||
-        !landing_usable(cycle, config, body, step_m, (saddle_vec2_t){x_m, lateral.value})) {
+        !landing_usable(cycle, config, body, step_m, (saddle_vec2_t){x_m, lateral.value}) ||
+        (x_m > old_x_m && !can_brake(cycle, config, -x_m))) {
         return false;
     }
     saddle_swing_state_t foot;

@@ -12,6 +12,14 @@
 /* A CoM that is slower may leave the feet where they are, to the bit. */
 #define REST_M_S 0.02f
 
+saddle_measurement_t saddle_no_measurement(void)
+{
+    return (saddle_measurement_t){
+        .com = {.age_us = SADDLE_AGE_NEVER_US},
+        .foot = {{.age_us = SADDLE_AGE_NEVER_US}, {.age_us = SADDLE_AGE_NEVER_US}},
+    };
+}
+
 static bool vec2_within(saddle_vec2_t v, float max)
 {
     return saddle_in_range(v.x, -max, max) && saddle_in_range(v.y, -max, max);
@@ -91,15 +99,18 @@ static bool contradicts(saddle_vec2_t *anchor_m, bool anchored, saddle_vec2_t co
     return !vec2_within(amiss_m, FROZEN_WAY_M);
 }
 
-/* The CoM kept its bits, and a foot on the ground went another way than they say. */
+/* The CoM kept its bits, and a foot on the ground went another way than they say, or a walk was
+ * planned: nobody walks without a change. */
 static bool com_frozen(saddle_watch_t *watch, const saddle_config_t *config,
-                       const saddle_measurement_t *measurement, float dt_s)
+                       const saddle_measurement_t *measurement, float planned_m_s, float dt_s)
 {
     saddle_still_t *still = &watch->com_still;
     const bool unchanged = measurement->com.height_m == watch->height_m &&
                            same(measurement->com.velocity_m_s, watch->velocity_m_s);
     follow_still(still, unchanged, measurement->com.velocity_m_s, dt_s);
-    watch->com_contradicted = watch->com_contradicted && unchanged;
+    watch->planned_way_m = unchanged ? watch->planned_way_m + planned_m_s * dt_s : 0.0f;
+    watch->com_contradicted = (watch->com_contradicted && unchanged) ||
+                              watch->planned_way_m > FROZEN_WAY_M;
     for (int side = 0; side < 2; side++) {
         const bool contact = measurement->foot[side].contact;
         const bool anchored = unchanged && contact && watch->stood[side];
@@ -113,10 +124,11 @@ static bool com_frozen(saddle_watch_t *watch, const saddle_config_t *config,
 }
 
 static uint32_t judge_alive(saddle_watch_t *watch, const saddle_config_t *config,
-                            const saddle_measurement_t *measurement, float dt_s)
+                            const saddle_measurement_t *measurement, float planned_m_s,
+                            float dt_s)
 {
     uint32_t faults = 0;
-    if (com_frozen(watch, config, measurement, dt_s)) {
+    if (com_frozen(watch, config, measurement, planned_m_s, dt_s)) {
         faults |= (uint32_t)SADDLE_FAULT_COM_FROZEN;
     }
     if (foot_frozen(watch, config, measurement, SADDLE_LEFT, dt_s)) {
@@ -137,6 +149,7 @@ static void forget_still(saddle_watch_t *watch)
 {
     const saddle_still_t none = {.still_s = 0.0f};
     watch->com_still = none;
+    watch->planned_way_m = 0.0f;
     watch->com_contradicted = false;
     for (int side = 0; side < 2; side++) {
         watch->foot_still[side] = none;
@@ -163,7 +176,7 @@ static uint32_t judge_feet(saddle_watch_t *watch, const saddle_config_t *config,
 }
 
 uint32_t saddle_judge(saddle_watch_t *watch, const saddle_config_t *config,
-                      const saddle_measurement_t *measurement, float dt_s)
+                      const saddle_measurement_t *measurement, float planned_m_s, float dt_s)
 {
     const uint32_t feet = judge_foot(config, measurement, SADDLE_LEFT) |
                           judge_foot(config, measurement, SADDLE_RIGHT);
@@ -172,7 +185,7 @@ uint32_t saddle_judge(saddle_watch_t *watch, const saddle_config_t *config,
         faults |= judge_feet(watch, config, measurement, dt_s);
     }
     if ((faults & (SADDLE_FAULTS_COM | SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT)) == 0u) {
-        faults |= judge_alive(watch, config, measurement, dt_s);
+        faults |= judge_alive(watch, config, measurement, planned_m_s, dt_s);
     } else {
         forget_still(watch);
     }

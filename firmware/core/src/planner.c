@@ -88,20 +88,22 @@ static void begin_shift(saddle_planner_t *planner, saddle_mode_t mode, saddle_ve
     planner->shift_to_m = to_m;
 }
 
-/* Stand on the measured feet from now on, if a walk can start from them. */
-static uint32_t stand_on(saddle_planner_t *planner, const saddle_config_t *config,
-                         const saddle_body_t *body, const saddle_feet_t *feet)
+static bool can_start_from(const saddle_config_t *config, const saddle_body_t *body,
+                           const saddle_feet_t *feet)
 {
     const saddle_vec2_t left = feet->cop_m[SADDLE_LEFT];
     const saddle_vec2_t right = feet->cop_m[SADDLE_RIGHT];
-    if (!feet->known || !feet->contact[SADDLE_LEFT] || !feet->contact[SADDLE_RIGHT]) {
-        return 0;
-    }
     const float reach_m = 2.0f * body->half_step_max_m;
-    if (!saddle_in_range(left.x - right.x, -reach_m, reach_m) ||
-        !saddle_in_range(left.y - right.y, START_WIDTH_MIN_M, 2.0f * config->step_width_slow_m)) {
-        return (uint32_t)SADDLE_LIMIT_FEET;
-    }
+    return feet->contact[SADDLE_LEFT] && feet->contact[SADDLE_RIGHT] &&
+           saddle_in_range(left.x - right.x, -reach_m, reach_m) &&
+           saddle_in_range(left.y - right.y, START_WIDTH_MIN_M, 2.0f * config->step_width_slow_m);
+}
+
+/* Stand on the measured feet from now on. */
+static void stand_on(saddle_planner_t *planner, const saddle_feet_t *feet)
+{
+    const saddle_vec2_t left = feet->cop_m[SADDLE_LEFT];
+    const saddle_vec2_t right = feet->cop_m[SADDLE_RIGHT];
     const saddle_side_t front = right.x > left.x ? SADDLE_RIGHT : SADDLE_LEFT;
     const saddle_vec2_t stance = feet->cop_m[front];
     const saddle_vec2_t other = feet->cop_m[saddle_other_side(front)];
@@ -111,7 +113,6 @@ static uint32_t stand_on(saddle_planner_t *planner, const saddle_config_t *confi
     planner->other_m.y = other.y - stance.y;
     planner->shift_to_m.x = 0.5f * planner->other_m.x;
     planner->shift_to_m.y = 0.5f * planner->other_m.y;
-    return 0;
 }
 
 /* From standing: feet further apart than the shortest half step are midway through a step; else the
@@ -132,6 +133,20 @@ static void begin_start(saddle_planner_t *planner, const saddle_config_t *config
     }
     planner->start_phase = left ? 0u : 2u;
     begin_shift(planner, SADDLE_MODE_STARTING, over_foot_m);
+}
+
+/* A walk is wanted: from the measured feet, if they are known. */
+static uint32_t start(saddle_planner_t *planner, const saddle_config_t *config,
+                      const saddle_body_t *body, const saddle_feet_t *feet)
+{
+    if (feet->known && !can_start_from(config, body, feet)) {
+        return (uint32_t)SADDLE_LIMIT_FEET;
+    }
+    if (feet->known) {
+        stand_on(planner, feet);
+    }
+    begin_start(planner, config);
+    return 0;
 }
 
 /* Both feet on the ground: the CoM's height over the leg that carries, the nearer one. */
@@ -358,10 +373,21 @@ void saddle_planner_advance(saddle_planner_t *planner, const saddle_config_t *co
     }
 }
 
+/* Both feet carry, and no step is under way. */
+static bool stands(const saddle_planner_t *planner)
+{
+    return planner->shifting || planner->mode == (uint8_t)SADDLE_MODE_STANDING;
+}
+
+float saddle_planner_speed_m_s(const saddle_planner_t *planner)
+{
+    return stands(planner) ? 0.0f : saddle_speed_to_m_s(planner->cycle.profile.speed);
+}
+
 uint32_t saddle_planner_horizon_us(const saddle_planner_t *planner)
 {
     const saddle_cycle_t *cycle = &planner->cycle;
-    if (planner->shifting || planner->mode == (uint8_t)SADDLE_MODE_STANDING) {
+    if (stands(planner)) {
         return STANDING_HORIZON_US;
     }
     const float step_m = saddle_cycle_before_landing(cycle) ? 2.0f : 3.0f;
@@ -423,11 +449,7 @@ uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_config_t 
     saddle_planner_advance(planner, config, body, dt_us);
     uint32_t limits = obey(planner, config, body, command);
     if (planner->mode == (uint8_t)SADDLE_MODE_STANDING) {
-        if (planner->speed_m_s > 0.0f) {
-            limits |= stand_on(planner, config, body, feet);
-            begin_start(planner, config);
-        }
-        return limits;
+        return limits | (planner->speed_m_s > 0.0f ? start(planner, config, body, feet) : 0u);
     }
     if (!planner->shifting) {
         limits |= take_landing(planner, config, body, feet);
@@ -485,7 +507,7 @@ static void write_step_events(const saddle_cycle_t *cycle, const saddle_config_t
 static void write_events(const saddle_planner_t *planner, const saddle_config_t *config,
                          saddle_plan_t *plan)
 {
-    if (!planner->shifting && planner->mode != (uint8_t)SADDLE_MODE_STANDING) {
+    if (!stands(planner)) {
         write_step_events(&planner->cycle, config, plan);
         return;
     }
@@ -590,7 +612,6 @@ uint32_t saddle_planner_write(const saddle_planner_t *planner, const saddle_conf
                               const saddle_body_t *body, saddle_plan_t *plan)
 {
     const saddle_cycle_t *cycle = &planner->cycle;
-    const bool standing = planner->shifting || planner->mode == (uint8_t)SADDLE_MODE_STANDING;
     uint32_t limits = 0;
     plan->valid = true;
     plan->mode = planner->mode;
@@ -598,7 +619,7 @@ uint32_t saddle_planner_write(const saddle_planner_t *planner, const saddle_conf
     plan->step_count = cycle->step_count;
     plan->stride_count = cycle->stride_count;
     plan->origin_x_nm = cycle->origin_x_nm;
-    if (standing) {
+    if (stands(planner)) {
         write_standing(planner, config, body, plan);
     } else {
         limits = write_walking(planner, config, body, plan);

@@ -60,7 +60,9 @@ static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t
     context->command_age_us = sum_us(context->command_age_us, aged_us);
     if (aged_us > limit_us) {
         *limits |= (uint32_t)SADDLE_LIMIT_TICK_GAP;
-        saddle_track_gap(&context->supervisor.steps, (float)aged_us * 1.0e-6f);
+        const float gap_s = (float)aged_us * 1.0e-6f;
+        saddle_supervisor_gap(&context->supervisor, gap_s);
+        saddle_safe_state_gap(&context->safe_state, &context->config, gap_s);
         return limit_us;
     }
     return aged_us;
@@ -160,7 +162,8 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     const uint32_t dt_us = elapsed_us(context, input->time_us, &output->limits);
     const float dt_s = (float)dt_us * 1.0e-6f;
     const uint32_t faults =
-        saddle_judge(&context->supervisor.watch, &context->config, &input->measurement, dt_s);
+        saddle_judge(&context->supervisor.watch, &context->config, &input->measurement,
+                     saddle_planner_speed_m_s(&context->planner), dt_s);
     output->faults = take_command(context, input);
     const bool stop = saddle_safe_state_update(&context->safe_state, &context->config,
                                                faults | output->faults, dt_s);

@@ -3,6 +3,10 @@
 
 static const uint32_t UNUSABLE = SADDLE_FAULTS_COM | SADDLE_FAULTS_FEET;
 
+static const uint32_t STALE = (uint32_t)SADDLE_FAULT_COM_STALE |
+                              (uint32_t)SADDLE_FAULT_LEFT_STALE |
+                              (uint32_t)SADDLE_FAULT_RIGHT_STALE;
+
 static const uint32_t LOST =
     (uint32_t)SADDLE_FAULT_COM_STALE | (uint32_t)SADDLE_FAULT_COM_FROZEN |
     (uint32_t)SADDLE_FAULT_LEFT_STALE | (uint32_t)SADDLE_FAULT_LEFT_FROZEN |
@@ -13,7 +17,7 @@ bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_config_t 
 {
     const bool commanded = (faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) == 0u;
     const bool measured = (faults & UNUSABLE) == 0u;
-    state->armed = state->armed || measured;
+    state->armed = state->armed || (faults & STALE) != STALE;
     state->lost_s = measured ? 0.0f : state->lost_s + dt_s;
     const bool lost = (faults & LOST) != 0u || state->lost_s > config->com_max_age_s;
     const bool good = commanded && (measured || !state->armed);
@@ -24,4 +28,12 @@ bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_config_t 
         state->stopped = false;
     }
     return state->stopped && config->lost_inputs_stop > 0.5f;
+}
+
+void saddle_safe_state_gap(saddle_safe_state_t *state, const saddle_config_t *config, float gap_s)
+{
+    if (state->armed && gap_s > config->com_max_age_s) {
+        state->stopped = true;
+        state->good_s = 0.0f;
+    }
 }

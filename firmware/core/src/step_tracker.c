@@ -35,6 +35,7 @@ static void follow_speed(saddle_step_tracker_t *tracker, bool velocity_known, fl
     if (!strike) {
         return;
     }
+    tracker->v_comp_known = false;
     if (tracker->step_open && tracker->step_duration_s > 0.0f) {
         tracker->v_comp_m_s = tracker->step_distance_m / tracker->step_duration_s;
         tracker->v_comp_known = true;
@@ -99,6 +100,7 @@ void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_config_t *c
         tracker->stance = (uint8_t)(left ? SADDLE_LEFT : SADDLE_RIGHT);
         tracker->since_strike_s = 0.0f;
     }
+    tracker->half_step_known = tracker->half_step_known && !strike;
     if (left_known && right_known) {
         if (strike) {
             follow_step(tracker, measurement, (saddle_side_t)tracker->stance);

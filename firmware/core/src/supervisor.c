@@ -442,6 +442,16 @@ static void announce(saddle_supervisor_t *supervisor, const saddle_config_t *con
     supervisor->reason = (uint8_t)announced_reason(supervisor, reason);
 }
 
+void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s)
+{
+    saddle_track_gap(&supervisor->steps, gap_s);
+    supervisor->level = (uint8_t)SADDLE_LEVEL_UNKNOWN;
+    for (int i = 0; i <= (int)SADDLE_LEVEL_UNSTABLE; i++) {
+        supervisor->at_least_ticks[i] = 0;
+        supervisor->at_most_ticks[i] = 0;
+    }
+}
+
 uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_config_t *config,
                                   const saddle_body_t *body,
                                   const saddle_measurement_t *measurement, uint32_t faults,
@@ -454,7 +464,8 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     const bool com_known = (faults & SADDLE_FAULTS_COM) == 0u;
     const bool is_to_stand = intent->leads && !intent->walking;
     const bool speed_known = !is_to_stand && (steps->v_comp_known || intent->step.speed_m_s > 0.0f);
-    const bool half_step_known = !is_to_stand && steps->half_step_known;
+    const bool half_step_known =
+        !is_to_stand && feet_known && com_known && steps->half_step_known;
     saddle_posture_t posture;
     posture.com_m.x = 0.0f;
     posture.com_m.y = 0.0f;

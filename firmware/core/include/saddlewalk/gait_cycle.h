@@ -59,7 +59,7 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_config_t *config,
                         const saddle_body_t *body, const saddle_cycle_start_t *start);
 
 /** Walk on for dt_us. Returns the microseconds left when a last swing ended with zero speed beside
- *  the stance foot; 0 while it walks on. At most four via points are passed. */
+ *  the stance foot; 0 while it walks on. At most eight via points are passed. */
 uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_config_t *config,
                               const saddle_body_t *body, float heel_strike_rad, uint32_t dt_us,
                               bool *arrived);

@@ -24,6 +24,9 @@ typedef struct {
     } foot[2];
 } saddle_measurement_t;
 
+/** That nothing was ever measured: for a plan without a wearer. */
+saddle_measurement_t saddle_no_measurement(void);
+
 /** Why an input was not used or gave no score. */
 typedef enum {
     SADDLE_FAULT_COMMAND = 1u << 0, /**< not usable: the last good one holds, see planner.h */
@@ -36,7 +39,7 @@ typedef enum {
     SADDLE_FAULT_FEET_TOGETHER = 1u << 7,    /**< CoPs within 1 mm: no saddle space */
     SADDLE_FAULT_SPEED_INFEASIBLE = 1u << 8, /**< v_CoMp cannot be walked: no step scores */
     SADDLE_FAULT_COM_FROZEN = 1u << 9,    /**< the same bits for com_max_age_s while the feet moved
-                                               otherwise */
+                                               otherwise, or a walk was planned */
     SADDLE_FAULT_LEFT_FROZEN = 1u << 10,  /**< the same bits for foot_max_age_s while the CoM moved */
     SADDLE_FAULT_RIGHT_FROZEN = 1u << 11,
     SADDLE_FAULT_AIRBORNE = 1u << 12,     /**< both feet in the air for longer than flight_max_s */
@@ -72,14 +75,15 @@ typedef struct {
     saddle_vec2_t anchor_m[2]; /**< where a foot on the ground should stay: CoP + way_m of the CoM,
                                     since it landed or the CoM is still */
     bool stood[2];             /**< the foot was on the ground at the last judgement */
-    bool com_contradicted;     /**< a foot has left its place */
+    float planned_way_m;       /**< since the CoM is still */
+    bool com_contradicted;     /**< a foot has left its place, or the plan has */
     float flight_s;      /**< since both feet are in the air */
 } saddle_watch_t;
 
 /** Judge a measurement: age, finite, humanly possible, alive, not contradictory. dt_s: since the
- *  last call. Absurd: a CoM below the knees (0.285 of the body's height) or above the body's height,
+ *  last call; planned_m_s: speed of the walk that was planned then, 0 for none. Absurd: a CoM below the knees (0.285 of the body's height) or above the body's height,
  *  faster than 6 m/s along x or y; a CoP beyond 2.5 m along x or y. Returns saddle_fault_t bits. */
 uint32_t saddle_judge(saddle_watch_t *watch, const saddle_config_t *config,
-                      const saddle_measurement_t *measurement, float dt_s);
+                      const saddle_measurement_t *measurement, float planned_m_s, float dt_s);
 
 #endif

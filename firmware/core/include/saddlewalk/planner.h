@@ -99,8 +99,9 @@ void saddle_planner_reset(saddle_planner_t *planner, const saddle_config_t *conf
 uint32_t saddle_planner_join(saddle_planner_t *planner, const saddle_config_t *config,
                              const saddle_body_t *body, const saddle_command_t *command);
 
-/** Obey a usable command and take over measured feet; then advance by dt_us. Returns
- *  saddle_limit_t bits. */
+/** Advance by dt_us; then obey a usable command and take over measured feet. A walk starts from
+ *  measured feet only if both are on the ground and no further apart than a step; else the plan stands
+ *  and says SADDLE_LIMIT_FEET. Returns saddle_limit_t bits. */
 uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_config_t *config,
                                const saddle_body_t *body, const saddle_command_t *command,
                                const saddle_feet_t *feet, uint32_t dt_us);
@@ -108,6 +109,9 @@ uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_config_t 
 /** Let time pass, nothing else. */
 void saddle_planner_advance(saddle_planner_t *planner, const saddle_config_t *config,
                             const saddle_body_t *body, uint32_t dt_us);
+
+/** Speed of the walk; 0 while both feet stand. */
+float saddle_planner_speed_m_s(const saddle_planner_t *planner);
 
 /** How far saddle_planner_advance() may go in one call: to the end of the next step, 0.5 s standing. */
 uint32_t saddle_planner_horizon_us(const saddle_planner_t *planner);

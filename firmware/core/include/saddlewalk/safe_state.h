@@ -8,7 +8,7 @@
 
 /** State, part of the context. */
 typedef struct {
-    bool armed;    /**< measurements were usable once: from then on they are needed */
+    bool armed;    /**< a measurement has come: from then on all are needed */
     bool stopped;  /**< inputs were lost, and have not been good for resume_time_s since */
     float lost_s;  /**< since a measurement was last usable */
     float good_s;  /**< since all that is needed is usable */
@@ -16,9 +16,12 @@ typedef struct {
 
 /** Follow the inputs' saddle_fault_t bits. True while the walk must stop: from the tick in which the
  *  command is stale, a measurement is stale or frozen, or measurements have been unusable in another
- *  way for com_max_age_s, until all have been good for resume_time_s. A plan that never was given
- *  measurements does not need them; feet that are together are no loss. */
+ *  way for com_max_age_s, until all have been good for resume_time_s. A plan that never was given any
+ *  measurement (SADDLE_AGE_NEVER_US) does not need them; feet that are together are no loss. */
 bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_config_t *config,
                               uint32_t faults, float dt_s);
+
+/** No tick for gap_s: longer than com_max_age_s is a loss. Call it before that tick's update. */
+void saddle_safe_state_gap(saddle_safe_state_t *state, const saddle_config_t *config, float gap_s);
 
 #endif

@@ -20,7 +20,8 @@ typedef struct {
 } saddle_step_tracker_t;
 
 /** Follow one measurement judged by saddle_judge(). A foot that was in the air for less than 0.12 s
- *  did not step. What is older than step_time_max_s is forgotten. Standing is seen when both feet
+ *  did not step. What is older than step_time_max_s is forgotten, or older than a step that could not
+ *  be measured. Standing is seen when both feet
  *  carry and the CoM is slower than 0.2 m/s. */
 void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_config_t *config,
                         const saddle_measurement_t *measurement, uint32_t faults, float dt_s);

@@ -99,7 +99,7 @@ typedef struct {
 
 /** What the supervisor takes from the planner: where the wearer is to be. */
 typedef struct {
-    bool leads;        /**< a walk has been commanded since the start: the wearer follows the plan */
+    bool leads;        /**< a walk is planned, or has been walked since the start */
     bool walking;      /**< else both feet stand */
     saddle_step_t step;      /**< the planned one, while walking */
     saddle_com_state_t com;  /**< planned, from the planned stance CoP; while both feet stand from
@@ -119,6 +119,9 @@ typedef struct {
 /** Score a posture. Whatever is not known is not scored. Writes all of *scores. */
 void saddle_score_posture(const saddle_config_t *config, const saddle_body_t *body,
                           const saddle_posture_t *posture, saddle_scores_t *scores);
+
+/** What happened in the last gap_s is not known: no level holds over it. */
+void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s);
 
 /** Follow the steps, score the posture in the frame of the CoM and give the verdict. While a plan has
  *  both feet stand there is no walk to score: v_comp_m_s, the step scores and s_sw are not valid.
