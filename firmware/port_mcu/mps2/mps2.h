@@ -25,7 +25,8 @@ void mps2_wake(void);
 /** Start the 80 ms timer. */
 void mps2_clock_start(void);
 
-/** Start the watchdog: it bites after three ticks without a kick. */
+/** Start the watchdog: after two and a half ticks without a kick it warns, for which the controller
+ *  hangs, and after five it resets. */
 void mps2_watchdog_start(void);
 
 /** Start the serial line that stands for a CAN controller: SLCAN, see slcan.h. */

@@ -3,16 +3,18 @@
 extern char __stack[]; /* the linker's */
 void _start(void);     /* the C library's */
 
-/** The watchdog's first warning. Here a maker brings the machine into its safe state; a tick that is
- *  in time may still take the warning back. */
-static void on_watchdog(void)
-{
-}
-
 static void hang(void)
 {
     for (;;) { /* nothing can be trusted any more: the watchdog resets the controller */
     }
+}
+
+/** The watchdog's warning, which comes out of whatever else hangs. Here a maker brings the machine
+ *  into its safe state. There is no way back: the line stays up until the warning is cleared, which
+ *  on this watchdog is a kick, and only a good tick may give one. */
+static void on_warning(void)
+{
+    hang();
 }
 
 static void on_timer(void)
@@ -42,7 +44,7 @@ extern const vectors_t __interrupt_vector; /* so the C library calls it */
 const vectors_t __interrupt_vector __attribute__((section(".data.init.enter"), used)) = {
     .stack = __stack,
     .reset = _start,
-    .warning = on_watchdog,
+    .warning = on_warning,
     .faults = {hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang, hang},
     .interrupts = {[MPS2_UART_RECEIVED] = on_uart_received,
                    [MPS2_UART_SENT] = mps2_uart_sent,
