@@ -131,6 +131,18 @@ def test_its_stack_stays_below_the_worst_case_and_it_has_no_heap(monkeypatch):
     assert not {"malloc", "calloc", "realloc", "free", "sbrk", "_sbrk"} & set(names)
 
 
+def test_a_branch_is_no_call_of_what_the_linker_named_after_its_address(monkeypatch):
+    monkeypatch.syspath_prepend(Path(__file__).parents[1] / "targets")
+    import stack
+
+    graph = stack.of_image(
+        "00001000 <outer>:\n    1000:\tpush\t{r4, lr}\n    1002:\tbeq.n\t1006 <__bss_size>\n"
+        "    1004:\tbl\t1008 <__data_size>\n    1006:\tpop\t{r4, pc}\n"
+        "00001008 <inner>:\n    1008:\tsub\tsp, #16\n"
+    )
+    assert graph.calls["outer"] == {"inner"} and graph.worst("outer") == 8 + 16
+
+
 @on_controller
 def test_a_configuration_that_saddle_init_refuses_is_told():
     with (

@@ -13,11 +13,11 @@ NODE = re.compile(
     r'node: \{ title: "(?P<name>[^"]+)" label: "[^"]*\\n(?P<bytes>\d+) bytes \((.*?)\)'
 )
 EDGE = re.compile(r'edge: \{ sourcename: "(?P<caller>[^"]+)" targetname: "(?P<callee>[^"]+)"')
-LABEL = re.compile(r"^[0-9a-f]+ <(?P<name>[^>]+)>:")
+LABEL = re.compile(r"^(?P<address>[0-9a-f]+) <(?P<name>[^>]+)>:", re.MULTILINE)
 PUSH = re.compile(r"\t(?P<v>v?)push\s+\{(?P<registers>[^}]*)\}")
 LOWER = re.compile(r"\t(?:sub(?:\.w|w)?\s+sp,(?: sp,)? #|addi\s+sp,sp,-)(?P<bytes>\d+)")
 STORE = re.compile(r"\tstr(?:d|\.w)?\s+.*\[sp, #-(?P<bytes>\d+)\]!")
-BRANCH = re.compile(r"\t(?:b|bl|j|jal)[a-z.]*\s+[^<]*<(?P<callee>[^>+]+)>")
+BRANCH = re.compile(r"\t(?:b|bl|j|jal)[a-z.]*\s[^<]*\b(?P<address>[0-9a-f]+) <")
 INDIRECT = re.compile(r"\tblx\s+r\d|\tjalr\s+(?:ra,)?[at]\d")
 
 
@@ -70,7 +70,9 @@ def lowered(line: str) -> int:
 
 
 def of_image(disassembly: str) -> CallGraph:
+    """By addresses: objdump names a branch by any symbol of that value, a mere number too."""
     graph = CallGraph()
+    functions = {int(at["address"], 16): at["name"] for at in LABEL.finditer(disassembly)}
     name = ""
     for line in disassembly.splitlines():
         if label := LABEL.match(line):
@@ -81,8 +83,9 @@ def of_image(disassembly: str) -> CallGraph:
             if INDIRECT.search(line):
                 graph.calls[name].add("__indirect_call")
             branch = BRANCH.search(line)
-            if branch and branch["callee"] != name:
-                graph.calls[name].add(branch["callee"])
+            callee = functions.get(int(branch["address"], 16)) if branch else None
+            if callee and callee != name:
+                graph.calls[name].add(callee)
     return graph
 
 
