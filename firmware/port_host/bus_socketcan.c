@@ -1,5 +1,6 @@
 #include "bus_socketcan.h"
 
+#include "network_interface.h"
 #include "stamped.h"
 #include <errno.h>
 #include <fcntl.h>

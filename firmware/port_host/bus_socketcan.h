@@ -2,7 +2,7 @@
 #ifndef SADDLEWALK_HOST_BUS_SOCKETCAN_H
 #define SADDLEWALK_HOST_BUS_SOCKETCAN_H
 
-#include "bus.h"
+#include "bus_types.h"
 
 /** Open bus->channel, the name of an interface. */
 bool saddle_bus_socketcan_open(saddle_bus_t *bus);

@@ -1,6 +1,7 @@
 #include "bus_udp.h"
 
 #include "datagram.h"
+#include "network_interface.h"
 #include "stamped.h"
 #include <arpa/inet.h>
 #include <errno.h>

@@ -7,7 +7,7 @@
 #ifndef SADDLEWALK_HOST_BUS_UDP_H
 #define SADDLEWALK_HOST_BUS_UDP_H
 
-#include "bus.h"
+#include "bus_types.h"
 
 /** Open bus->channel: GROUP:PORT or GROUP:PORT@INTERFACE, with an IPv4 multicast group. */
 bool saddle_bus_udp_open(saddle_bus_t *bus);

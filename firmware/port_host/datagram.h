@@ -5,7 +5,7 @@
 #ifndef SADDLEWALK_HOST_DATAGRAM_H
 #define SADDLEWALK_HOST_DATAGRAM_H
 
-#include "bus.h"
+#include "bus_types.h"
 #include <stddef.h>
 
 /** Longest datagram accepted. python-can's are 180 bytes for a classic frame. */

@@ -1,6 +1,8 @@
 """What the build makes and says: declarations for cffi, the set-up's complaints, the summary."""
 
+import graphlib
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -32,6 +34,16 @@ def test_a_missing_product_is_named_with_the_command_that_makes_it(monkeypatch, 
     monkeypatch.setenv("SADDLEWALK_BUILD", str(tmp_path))
     with pytest.raises(UserError, match=r"bin/saddlewalk-host.*make build"):
         paths.built("bin/saddlewalk-host")
+
+
+def test_no_two_files_of_the_firmware_need_each_other():
+    """A .c and its .h are one; what a header of a name needs, any header of that name does."""
+    needs: dict[str, set[str]] = {}
+    for file in (paths.CHECKOUT / "firmware").rglob("*.[ch]"):
+        included = re.findall(r'#include ["<](?:saddlewalk/)?(\w+)\.h[">]', file.read_text())
+        needs.setdefault(file.stem, set()).update({*included} - {file.stem})
+    assert needs["bus"] and needs["saddlewalk"] and len(needs) > 50
+    graphlib.TopologicalSorter(needs).prepare()
 
 
 def bootstrap(python: str, venv: Path, **environment: str) -> subprocess.CompletedProcess:

@@ -1,4 +1,5 @@
 /** Full queues, lost interfaces and bus-off, from a transport that does as the test says. */
+#include <bus.h>
 #include <bus_socketcan.h>
 #include <bus_udp.h>
 

@@ -1,0 +1,10 @@
+/** The network interfaces of this machine. */
+#ifndef SADDLEWALK_HOST_NETWORK_INTERFACE_H
+#define SADDLEWALK_HOST_NETWORK_INTERFACE_H
+
+#include <stdbool.h>
+
+/** Whether there is one of that name and it is up. */
+bool saddle_interface_is_up(const char *name);
+
+#endif
