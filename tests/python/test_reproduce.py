@@ -144,6 +144,13 @@ def test_jump_is_that_at_the_saddle_itself_however_coarse_the_rows(speed, simula
     assert coarse.jump_m == pytest.approx(simulated.at(speed).jump_m, abs=2e-4)
 
 
+@pytest.mark.parametrize("speed", [0.7, 1.5, 1.6, 1.9])
+def test_toe_off_angle_is_that_at_heel_strike_however_coarse_the_rows(speed):
+    fine = simulations.simulate(speed, samples=8000)
+    coarse = simulations.simulate(speed, samples=simulations.COARSE_SAMPLES)
+    assert coarse.toe_off_rad == pytest.approx(fine.toe_off_rad, abs=math.radians(0.05))
+
+
 def test_a_number_that_is_missing_is_off():
     lost = numbers.Number("x", "", "0.10", math.nan, "m", 0.005, "eq:03", stated=True)
     assert not lost.sound

@@ -155,9 +155,17 @@ class Walk:
 
     @cached_property
     def _toe_off(self) -> tuple[np.ndarray, np.ndarray]:
-        """Times and angles until the first saddle via point: there the angle rises."""
+        """Times and angles until the first saddle via point: there the angle rises.
+
+        The heel strikes some milliseconds before the saddle, often after the last sample; the
+        angle at the saddle is that of the slope before it.
+        """
         until = self._last_before_saddles[0] + 1
-        return self["t_s"][:until], self["theta_to_rad"][:until]
+        time_s, angle_rad = self["t_s"][:until], self["theta_to_rad"][:until]
+        slope_rad_s = (angle_rad[-1] - angle_rad[-2]) / (time_s[-1] - time_s[-2])
+        saddle_s = self.saddles_s[0]
+        at_saddle_rad = angle_rad[-1] + slope_rad_s * (saddle_s - time_s[-1])
+        return np.append(time_s, saddle_s), np.append(angle_rad, at_saddle_rad)
 
 
 def simulate(
