@@ -5,8 +5,12 @@
 
 #include <stdint.h>
 
-/** Paint from the lowest word to before `end`, below which nothing is in use yet. */
-void saddle_stack_paint(uint32_t *lowest, const uint32_t *end);
+/** A word of paint. */
+#define SADDLE_STACK_PAINT 0x5ADD1E57u
+
+/** Paint the stack in use, from its lowest word to 256 bytes below this function's frame: certainly
+ *  below all that is live, wherever a compiler puts it. Before there are interrupts. */
+void saddle_stack_paint(uint32_t *lowest);
 
 /** Bytes from the deepest word that lost its paint to before `top`, the stack's end. */
 uint32_t saddle_stack_used(const uint32_t *lowest, const uint32_t *top);

@@ -46,7 +46,7 @@ int main(void)
 {
     saddle_config_t config;
     bool lockstep;
-    saddle_stack_paint(stack_lowest(), __builtin_frame_address(0));
+    saddle_stack_paint(stack_lowest());
     if (!saddle_settings_read(SETTINGS, &config, &lockstep)) {
         printf("settings: the page is damaged, was never written, or holds other fields\n");
         return 1;
