@@ -100,16 +100,24 @@ def test_in_real_time_its_timer_makes_the_ticks_and_ages_grow():
     }  # more than one tick's where a busy machine missed some
 
 
+def tool(name: str, *options: str) -> str:
+    """What a tool of the compiler says of the image."""
+    return subprocess.check_output([f"arm-none-eabi-{name}", *options, qemu.IMAGE], text=True)
+
+
+@on_controller
+def test_no_interrupt_comes_between_the_timers_flag_and_its_count():
+    function = tool("objdump", "--no-show-raw-insn", "--disassemble=mps2_timer_came_round")
+    happens = re.findall(r"\tstr|interrupts_(?:hold|restore)(?=>$)", function, re.MULTILINE)
+    assert happens == ["interrupts_hold", "\tstr", "\tstr", "interrupts_restore"]
+
+
 @on_controller
 def test_its_stack_stays_below_the_worst_case_and_it_has_no_heap(monkeypatch):
     monkeypatch.syspath_prepend(Path(__file__).parents[1] / "targets")
     import stack
 
-    tools = "arm-none-eabi-"
-    disassembly = subprocess.check_output(
-        [f"{tools}objdump", "-d", "--no-show-raw-insn", qemu.IMAGE], text=True
-    )
-    graph = stack.of_image(disassembly)
+    graph = stack.of_image(tool("objdump", "-d", "--no-show-raw-insn"))
     interrupts = ("on_timer", "on_uart_received", "mps2_uart_sent")
     worst = (
         graph.frames["_start"]
@@ -127,7 +135,7 @@ def test_its_stack_stays_below_the_worst_case_and_it_has_no_heap(monkeypatch):
             assert next_tick(controller.bus, reader.feed, WAIT_S)
     used, size = map(int, re.search(r"stack: (\d+) of (\d+) bytes", controller.words).groups())
     assert 1000 < used <= worst < size
-    names = subprocess.check_output([f"{tools}nm", qemu.IMAGE], text=True).split()
+    names = tool("nm").split()
     assert not {"malloc", "calloc", "realloc", "free", "sbrk", "_sbrk"} & set(names)
 
 
