@@ -53,7 +53,7 @@ def load_lcm_log(path: Path) -> Log:
         events, broken = _collect(_lcm_events(path))
     left = path.stat().st_size - sum(map(_size, events))
     if left and not broken:
-        broken = f"{left} bytes of it are no event, as in a file that was cut"
+        broken = f"{left} bytes of the log are no event, as where one was cut or damaged"
     if not events:
         raise UserError(f"{path}: not one event of it can be read: {broken}")
     return Log(events, broken)

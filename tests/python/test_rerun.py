@@ -217,7 +217,7 @@ def test_a_log_that_was_cut_says_so(walk, tmp_path, capsys):
     cut.write_bytes((walk / "walk.lcmlog").read_bytes()[:-150])
     status, told, _ = rerun(cut, capsys)
     assert status == 1
-    assert "bytes of it are no event, as in a file that was cut" in told and "differ" not in told
+    assert "bytes of the log are no event" in told and "differ" not in told
 
 
 @pytest.mark.parametrize(
