@@ -21,17 +21,9 @@ static saddle_measurement_t wearer(const saddle_plan_t *plan)
         measured.foot[side].cop_m = (saddle_vec2_t){plan->foot_m[side].x - plan->com_m.x,
                                                     plan->foot_m[side].y - plan->com_m.y};
         measured.foot[side].contact =
-            side == (int)plan->support || plan->mode == (uint8_t)SADDLE_MODE_STANDING;
+            side == (int)plan->support || plan->speed_m_s == 0.0f; /* then both feet stand */
         measured.foot[side].age_us = 5000u;
     }
-    return measured;
-}
-
-static saddle_measurement_t nobody(void)
-{
-    saddle_measurement_t measured = {.com = {.age_us = SADDLE_AGE_NEVER_US}};
-    measured.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
-    measured.foot[SADDLE_RIGHT].age_us = SADDLE_AGE_NEVER_US;
     return measured;
 }
 
@@ -63,7 +55,7 @@ void saddle_bench_walk(saddle_bench_walk_t *walk, int number)
     for (uint32_t k = 0; k < SADDLE_BENCH_UPDATES; k++) {
         saddle_input_t *input = &walk->inputs[k];
         *input = (saddle_input_t){.time_us = (uint64_t)k * SADDLE_BENCH_PERIOD_US};
-        input->measurement = nobody();
+        input->measurement = saddle_no_measurement();
         if (walk->scores_plan || (k >= WALK_FROM && k < STAND_FROM)) {
             input->command = go;
         }
