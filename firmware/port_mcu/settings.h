@@ -5,8 +5,8 @@
 
 #include <saddlewalk/saddlewalk.h>
 
-/** The page, in words: saddle_settings_crc(); 1 for lockstep, else 0; saddle_ankle_t; then as floats
- *  all fields of saddle_config_field(), in its order. */
+/** The page, in words: saddle_settings_crc(); 1 for lockstep, else 0; saddle_ankle_t; then as
+ *  floats all fields of saddle_config_field(), in its order. */
 enum {
     SADDLE_SETTINGS_CRC = 0,
     SADDLE_SETTINGS_LOCKSTEP = 1,

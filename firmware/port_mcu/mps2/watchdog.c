@@ -12,8 +12,8 @@ typedef struct {
 #define WATCHDOG_WARN 1u
 #define WATCHDOG_RESET 2u
 
-/** Two and a half ticks: one may be late, but not the next too. It warns when its count is over, and
- *  resets when that is so again. */
+/** Two and a half ticks: one may be late, but not the next too. It warns when its count is over,
+ *  and resets when that is so again. */
 #define COUNTS (MPS2_CLOCK_HZ / 1000000u * SADDLE_TICK_US * 5u / 2u)
 
 void mps2_watchdog_start(void)

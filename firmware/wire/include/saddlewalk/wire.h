@@ -123,8 +123,8 @@ uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH]);
 saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint32_t id,
                                          const uint8_t *data, size_t length);
 
-/** From now on accept a COMMAND only after a COMMAND_CODE that vouches for it: none before the first
- *  saddle_wire_open_session(). */
+/** From now on accept a COMMAND only after a COMMAND_CODE that vouches for it: none before there is
+ *  a session. */
 void saddle_wire_demand_codes(saddle_wire_receiver_t *receiver,
                               const uint8_t key[SADDLE_CMAC_LENGTH]);
 
@@ -133,7 +133,8 @@ void saddle_wire_demand_codes(saddle_wire_receiver_t *receiver,
 void saddle_wire_open_session(saddle_wire_receiver_t *receiver, uint32_t session);
 
 /** Whether a tick is to open a new session: there is none, the freshness nears its end, or nobody
- *  commands. output: the tick's; ticks: how many came before it. Never while no codes are demanded. */
+ *  commands. output: the tick's; ticks: how many came before it. Never while no codes are
+ *  demanded. */
 bool saddle_wire_session_is_over(const saddle_wire_receiver_t *receiver,
                                  const saddle_output_t *output, uint32_t ticks);
 
