@@ -9,7 +9,7 @@ from saddlewalk.core import describe_bad_field
 from saddlewalk.errors import UserError
 from saddlewalk.paths import built
 from saddlewalk.ticks import MESSAGES
-from saddlewalk.wire import identifier
+from saddlewalk.transport.wire import identifier
 
 _OF_PROCESS = {identifier(name) for name in ("TIMING", "RECEIVED", "INPUTS")}
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import can
 
-from saddlewalk.wire import Receiver
+from saddlewalk.transport.wire import Receiver
 
 TICK_S = 0.08
 PLAN_MESSAGES = (

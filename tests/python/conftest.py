@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from saddlewalk.bus import private_udp
+from saddlewalk.transport.bus import private_udp
 
 # A job in the background of a script ignores Ctrl-C, and so would each process that a test starts.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -10,10 +10,10 @@ import can
 import pytest
 
 from saddlewalk import paths
-from saddlewalk.bus import open_bus, private_udp
 from saddlewalk.errors import UserError
-from saddlewalk.lcmbus import open_lcm
-from saddlewalk.wire import Receiver, Sender
+from saddlewalk.transport.bus import open_bus, private_udp
+from saddlewalk.transport.lcmbus import open_lcm
+from saddlewalk.transport.wire import Receiver, Sender
 
 WAIT_S = 2.0  # for what must come
 SILENCE_S = 0.1  # for what must not
@@ -115,7 +115,7 @@ class LcmNode:
         self.lcm.subscribe(channels, self._take).set_queue_capacity(1000)
 
     def _take(self, channel: str, data: bytes) -> None:
-        from saddlewalk import lcm_types
+        from saddlewalk.transport import lcm_types
 
         self.latest[channel] = getattr(lcm_types, f"{channel[11:].lower()}_t").decode(data)
 
@@ -128,7 +128,7 @@ class LcmNode:
         return self.latest
 
     def command(self, mode: int, speed_m_s: float) -> None:
-        from saddlewalk.lcm_types import command_t
+        from saddlewalk.transport.lcm_types import command_t
 
         message = command_t()
         message.mode, message.speed_m_s = mode, speed_m_s

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import pytest
 
-from saddlewalk import private_network
+from saddlewalk.transport import private_network
 
 _CLONE_NEWUSER, _CLONE_NEWNET = 0x10000000, 0x40000000
 _SIOCSIFNAME = 0x8923

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from saddlewalk.recording import COLUMNS, Recording
+from saddlewalk.gait.recording import COLUMNS, Recording
 
 
 @dataclass(frozen=True)

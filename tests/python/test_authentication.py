@@ -7,9 +7,10 @@ import pytest
 from cffi import FFI
 
 from host_node import STANDING, Host
-from saddlewalk import paths, wire
-from saddlewalk.authentication import Voucher, code_of
+from saddlewalk import paths
 from saddlewalk.errors import UserError
+from saddlewalk.transport import wire
+from saddlewalk.transport.authentication import Voucher, code_of
 
 SEED = 20261122
 KEY = bytes.fromhex("2b7e151628aed2a6abf7158809cf4f3c")

@@ -10,14 +10,12 @@ import sys
 import numpy as np
 import pytest
 
-from saddlewalk import bench, instructions
-from saddlewalk.bench import BODY, PERIOD_S, CorePlan, calls_of_plan, instants, neighbours
-from saddlewalk.cli import main
-from saddlewalk.commands.plan import COLUMNS, row_of
-from saddlewalk.neighbours import MissingError
-from saddlewalk.neighbours.numpy_plan import GRAVITY_M_S2, margin, plan
-from saddlewalk.neighbours.octave_plan import ROWS, Octave
-from saddlewalk.neighbours.walking_qp import (
+from saddlewalk.benchmark import instructions
+from saddlewalk.benchmark import timing as bench
+from saddlewalk.benchmark.neighbours import MissingError
+from saddlewalk.benchmark.neighbours.numpy_plan import GRAVITY_M_S2, margin, plan
+from saddlewalk.benchmark.neighbours.octave_plan import ROWS, Octave
+from saddlewalk.benchmark.neighbours.walking_qp import (
     JERK_WEIGHT_S6,
     SOLVERS,
     VELOCITY_WEIGHT_S2,
@@ -25,7 +23,17 @@ from saddlewalk.neighbours.walking_qp import (
     Preview,
     WalkingQp,
 )
+from saddlewalk.benchmark.timing import (
+    BODY,
+    PERIOD_S,
+    CorePlan,
+    calls_of_plan,
+    instants,
+    neighbours,
+)
+from saddlewalk.cli import main
 from saddlewalk.paths import build_dir
+from saddlewalk.planning.steady import COLUMNS, row_of
 from twin import bos_margin
 
 SPEEDS = (0.7, 1.0, 1.2, 1.6)

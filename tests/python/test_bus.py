@@ -11,11 +11,11 @@ import can
 import pytest
 
 from host_node import MESSAGES_PER_TICK, STANDING, WALK, lockstep
-from saddlewalk.bus import DEFAULT_GROUP, LoopbackUdpBus, describe, open_bus, private_udp
 from saddlewalk.errors import UserError
-from saddlewalk.lcmbus import open_lcm
 from saddlewalk.paths import built
-from saddlewalk.wire import Receiver, Sender
+from saddlewalk.transport.bus import DEFAULT_GROUP, LoopbackUdpBus, describe, open_bus, private_udp
+from saddlewalk.transport.lcmbus import open_lcm
+from saddlewalk.transport.wire import Receiver, Sender
 
 WAIT_S = 2.0  # for what must come
 SILENCE_S = 0.05  # for what must not

@@ -15,15 +15,15 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main, parser
-from saddlewalk.commands.plan import walk as planned
 from saddlewalk.config import ANKLES, configuration, host_arguments, load_config
 from saddlewalk.core import Core, field_ranges
 from saddlewalk.errors import UserError
-from saddlewalk.motion_capture import load_walk
+from saddlewalk.gait.measures import measure
+from saddlewalk.gait.motion_capture import load_walk
+from saddlewalk.gait.recording import Recording
 from saddlewalk.paths import CHECKOUT, built
-from saddlewalk.recording import Recording
+from saddlewalk.planning.steady import walk as planned
 from saddlewalk.table import read_table
-from saddlewalk.walk_measures import measure
 from synthetic_walk import Walk, csv_text
 
 PERSON = {

@@ -14,14 +14,14 @@ import can
 import pytest
 
 from host_node import MESSAGES_PER_TICK, STANDING, WALK, own_lcm
-from saddlewalk import exoskeleton, qemu
-from saddlewalk.bus import private_udp
 from saddlewalk.cli import main
 from saddlewalk.config import configuration
+from saddlewalk.emulation import exoskeleton, qemu
 from saddlewalk.errors import UserError
-from saddlewalk.slcan import SlcanBus, frame_of, text_of
 from saddlewalk.ticks import TICK_S, TickReader, next_tick
-from saddlewalk.wire import FRAME_LENGTH, Sender, message_name
+from saddlewalk.transport.bus import private_udp
+from saddlewalk.transport.slcan import SlcanBus, frame_of, text_of
+from saddlewalk.transport.wire import FRAME_LENGTH, Sender, message_name
 
 on_controller = pytest.mark.targets
 START_S = 10.0  # for what must come from a machine that starts

@@ -15,10 +15,10 @@ import can
 import lcm
 import pytest
 
-from saddlewalk.bus import open_bus, private_udp
 from saddlewalk.cli import main
-from saddlewalk.recorder import CHANNELS, COLUMNS
+from saddlewalk.logs.recorder import CHANNELS, COLUMNS
 from saddlewalk.ticks import TICK_S
+from saddlewalk.transport.bus import open_bus, private_udp
 
 FILES = {"walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"}
 
@@ -122,7 +122,7 @@ def test_demo_in_real_time(tmp_path, ports):
 
 
 def test_demo_refuses_a_bus_on_which_somebody_walks(tmp_path, ports, capsys):
-    from saddlewalk.host import running_host
+    from saddlewalk.emulation.host import running_host
 
     assert demo(tmp_path, ports, "--duration", "1") == 0
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
@@ -162,7 +162,7 @@ def test_demo_says_where_it_cannot_write(tmp_path, ports, capsys):
 
 
 def test_what_was_recorded_stays_when_the_firmware_dies(tmp_path, ports, capsys, monkeypatch):
-    from saddlewalk import exoskeleton, host
+    from saddlewalk.emulation import exoskeleton, host
 
     monkeypatch.setattr(exoskeleton, "SILENCE_S", 0.5)
     started = []
@@ -203,7 +203,7 @@ def test_demo_makes_its_own_network_where_lcm_has_no_route(tmp_path):
 
 
 def test_emulate_without_firmware_says_so(ports, capsys, monkeypatch):
-    from saddlewalk import exoskeleton
+    from saddlewalk.emulation import exoskeleton
 
     monkeypatch.setattr(exoskeleton, "SILENCE_S", 0.3)
     for clock in ("lockstep", "realtime"):
@@ -213,8 +213,8 @@ def test_emulate_without_firmware_says_so(ports, capsys, monkeypatch):
 
 
 def test_emulate_gives_up_on_firmware_that_does_not_hear_it(ports, capsys, monkeypatch):
-    from saddlewalk import exoskeleton
-    from saddlewalk.host import running_host
+    from saddlewalk.emulation import exoskeleton
+    from saddlewalk.emulation.host import running_host
 
     monkeypatch.setattr(exoskeleton, "START_TICKS", 5)
     with running_host(f"--can={ports[1]}", "--lcm=none"):
@@ -224,7 +224,7 @@ def test_emulate_gives_up_on_firmware_that_does_not_hear_it(ports, capsys, monke
 
 
 def test_emulate_ends_with_status_1_after_a_fall(ports, capsys):
-    from saddlewalk.host import running_host
+    from saddlewalk.emulation.host import running_host
 
     walk = ["emulate", "--clock", "lockstep", *ports, "--duration", "6"]
     with running_host(f"--can={ports[1]}", f"--lcm={ports[3]}", "--clock=lockstep"):

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from saddlewalk import closed_loop
 from saddlewalk.cli import main
-from saddlewalk.closed_loop import Tick
 from saddlewalk.core import ffi, library
-from saddlewalk.emulator import (
+from saddlewalk.emulation import closed_loop
+from saddlewalk.emulation.closed_loop import Tick
+from saddlewalk.emulation.wearer import (
     ARRIVED_M,
     LEFT,
     RIGHT,
@@ -26,7 +26,7 @@ from saddlewalk.emulator import (
     SteadyStep,
     Wearer,
 )
-from saddlewalk.schedule import schedule_of
+from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.ticks import TICK_S
 
 STEADY = Noise(0.0, 0.0, 0.0)

@@ -8,12 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from saddlewalk.baselines import FOOT_BREADTH, FOOT_LENGTH, hof_margin_m, hull_margin_m
 from saddlewalk.cli import main
 from saddlewalk.core import ffi, library
-from saddlewalk.detection import detection_of, push_limits, recovery_worth, roc
-from saddlewalk.emulator import Body
-from saddlewalk.evaluation import (
+from saddlewalk.emulation.wearer import Body
+from saddlewalk.evaluation.baselines import FOOT_BREADTH, FOOT_LENGTH, hof_margin_m, hull_margin_m
+from saddlewalk.evaluation.detection import detection_of, push_limits, recovery_worth, roc
+from saddlewalk.evaluation.region import POSTURES, Posture, bring_to_rest, explore, grid
+from saddlewalk.evaluation.walks import (
     BEYOND_HELP_S,
     CELLS,
     KINDS,
@@ -29,7 +30,6 @@ from saddlewalk.evaluation import (
     run,
     ticks_of,
 )
-from saddlewalk.region import POSTURES, Posture, bring_to_rest, explore, grid
 from synthetic_walk import Walk as RecordedWalk
 from synthetic_walk import csv_text
 

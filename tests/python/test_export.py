@@ -10,8 +10,8 @@ import lcm
 import pytest
 
 from saddlewalk.cli import main
-from saddlewalk.log_tables import columns_of, element_names
-from saddlewalk.logs import decode, load_lcm_log
+from saddlewalk.logs.messages import decode, load_lcm_log
+from saddlewalk.logs.tables import columns_of, element_names
 
 CHANNELS = {"bos", "config", "health", "input", "plan", "scores", "truth", "verdict"}
 

@@ -8,14 +8,23 @@ import numpy as np
 import pytest
 
 from host_node import QUICK, Host, own_lcm
-from saddlewalk import core, wire
+from saddlewalk import core
 from saddlewalk.cli import main
 from saddlewalk.config import configuration
 from saddlewalk.errors import UserError
-from saddlewalk.fault_campaign import Device, campaign, rows_of, run
-from saddlewalk.fault_judge import BAD_PLAN, NO_STOP, OLD_SCORE, SILENT_STOP, Judge
-from saddlewalk.faults import KINDS, MEASURED, MESSAGES, Fault, Happening, Line, read_scenario
-from saddlewalk.live_faults import live_walks, run_live
+from saddlewalk.faults.campaign import Device, campaign, rows_of, run
+from saddlewalk.faults.judge import BAD_PLAN, NO_STOP, OLD_SCORE, SILENT_STOP, Judge
+from saddlewalk.faults.live import live_walks, run_live
+from saddlewalk.faults.scenario import (
+    KINDS,
+    MEASURED,
+    MESSAGES,
+    Fault,
+    Happening,
+    Line,
+    read_scenario,
+)
+from saddlewalk.transport import wire
 
 EXAMPLE = Path(__file__).parents[2] / "examples/faults.toml"
 CONFIG = configuration({})

@@ -25,9 +25,9 @@ from host_node import (
     own_lcm,
 )
 from saddlewalk import paths
-from saddlewalk.bus import open_bus
-from saddlewalk.lcmbus import open_lcm
-from saddlewalk.wire import frame_crc
+from saddlewalk.transport.bus import open_bus
+from saddlewalk.transport.lcmbus import open_lcm
+from saddlewalk.transport.wire import frame_crc
 
 STANDING_MODE, STARTING, WALKING = 0, 1, 2
 

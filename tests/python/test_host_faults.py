@@ -35,9 +35,9 @@ from private_test_network import (
     unroute,
 )
 from saddlewalk import paths
-from saddlewalk.bus import describe, private_udp
-from saddlewalk.lcm_types import plan_t, status_t
-from saddlewalk.wire import WIRE_VERSION, Receiver, frame_crc
+from saddlewalk.transport.bus import describe, private_udp
+from saddlewalk.transport.lcm_types import plan_t, status_t
+from saddlewalk.transport.wire import WIRE_VERSION, Receiver, frame_crc
 
 FAULT_COMMAND_STALE, LIMIT_SAFE_STOP = 1 << 14, 1 << 5
 STAND = {"MODE": 0, "SPEED": 0.0, "HEEL_STRIKE": 0.0}

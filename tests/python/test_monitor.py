@@ -17,8 +17,8 @@ from rich.console import Console
 from saddlewalk import core, dashboard, paths, process_words
 from saddlewalk import verdict as verdicts
 from saddlewalk.commands.monitor import CHANNELS, Listener
-from saddlewalk.lcm_types import health_t, plan_t, scores_t, status_t, verdict_t
 from saddlewalk.letters import large
+from saddlewalk.transport.lcm_types import health_t, plan_t, scores_t, status_t, verdict_t
 
 MONITOR = [
     sys.executable,

@@ -16,7 +16,7 @@ import pytest
 import yaml
 
 from saddlewalk import paths
-from saddlewalk.wire import Receiver
+from saddlewalk.transport.wire import Receiver
 
 CHECKOUT = paths.CHECKOUT
 CONSUMERS = CHECKOUT / "tests/consumers"

@@ -11,9 +11,9 @@ import pytest
 from saddlewalk import paths
 from saddlewalk.cli import main
 from saddlewalk.errors import UserError
-from saddlewalk.gait_events import FootEvents, analyse, mean_speed
-from saddlewalk.recording import COLUMNS, Recording, load_recording
-from saddlewalk.samples import SAMPLES, load_sample
+from saddlewalk.gait.events import FootEvents, analyse, mean_speed
+from saddlewalk.gait.recording import COLUMNS, Recording, load_recording
+from saddlewalk.gait.samples import SAMPLES, load_sample
 from synthetic_walk import Walk, csv_text
 
 SIDES = (0, 1)
@@ -233,7 +233,7 @@ def test_the_samples_are_a_healthy_and_a_slower_walk():
 def test_a_landmark_of_zeros_was_not_seen(monkeypatch, tmp_path):
     import json
 
-    from saddlewalk import samples
+    from saddlewalk.gait import samples
 
     points = ("hip", "heel", "toe")
     landmarks = {
@@ -263,7 +263,7 @@ def test_a_landmark_of_zeros_was_not_seen(monkeypatch, tmp_path):
 def test_without_gaitkit_the_remedy_is_named(monkeypatch, capsys):
     from importlib.metadata import PackageNotFoundError
 
-    from saddlewalk import samples
+    from saddlewalk.gait import samples
 
     def absent(name):
         raise PackageNotFoundError(name)

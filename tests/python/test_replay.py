@@ -14,18 +14,18 @@ import cantools
 import numpy as np
 import pytest
 
-from saddlewalk import playback
-from saddlewalk.bus import open_bus, private_udp
 from saddlewalk.cli import main
 from saddlewalk.commands.replay import SCORE_COLUMNS
 from saddlewalk.core import Command, Core, Measurement, ffi, library
 from saddlewalk.errors import UserError
-from saddlewalk.gait_events import analyse
+from saddlewalk.gait import playback
+from saddlewalk.gait.events import analyse
+from saddlewalk.gait.playback import measurements, play_lockstep, play_realtime
 from saddlewalk.paths import CHECKOUT
-from saddlewalk.playback import measurements, play_lockstep, play_realtime
 from saddlewalk.table import format_cell
 from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages
-from saddlewalk.wire import Receiver, Sender
+from saddlewalk.transport.bus import open_bus, private_udp
+from saddlewalk.transport.wire import Receiver, Sender
 from synthetic_walk import Walk, csv_text
 
 HEIGHT_M, MASS_KG = 1.79, 63.3
@@ -273,7 +273,7 @@ def test_the_host_answers_as_the_core_fed_offline_with_the_same_frames(capsys, t
     printed = told(capsys.readouterr().out)
 
     from saddlewalk.commands.replay import report, score_row
-    from saddlewalk.recording import load_recording
+    from saddlewalk.gait.recording import load_recording
 
     read = load_recording(str(trial))
     gait = analyse(read)

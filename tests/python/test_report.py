@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main
-from saddlewalk.logs import Event, decode, load_lcm_log
+from saddlewalk.logs.messages import Event, decode, load_lcm_log
 from saddlewalk.session import page as session_page
 from saddlewalk.session import pictures
 from saddlewalk.session.runs import load_session

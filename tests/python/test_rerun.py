@@ -12,10 +12,11 @@ import lcm
 import pytest
 
 from host_node import own_lcm
-from saddlewalk import paths, wire
-from saddlewalk.bus import private_udp
+from saddlewalk import paths
 from saddlewalk.cli import main
-from saddlewalk.logs import load_lcm_log
+from saddlewalk.logs.messages import load_lcm_log
+from saddlewalk.transport import wire
+from saddlewalk.transport.bus import private_udp
 
 TICKS = 163  # of 13 s
 OUTPUTS = TICKS * 5
@@ -141,7 +142,7 @@ def leaves(struct) -> dict[str, bytes]:
 
 def test_every_field_of_the_configuration_is_logged_and_counts(walk, tmp_path, capsys):
     from saddlewalk.firmware import ffi
-    from saddlewalk.lcm_types import config_t
+    from saddlewalk.transport.lcm_types import config_t
 
     events = events_of(walk)
     config = config_t.decode(events[0].data)
@@ -158,7 +159,7 @@ def test_every_field_of_the_configuration_is_logged_and_counts(walk, tmp_path, c
 
 
 def test_a_configuration_of_another_version_is_refused(walk, tmp_path, capsys):
-    from saddlewalk.lcm_types import config_t
+    from saddlewalk.transport.lcm_types import config_t
 
     events = events_of(walk)
     config = config_t.decode(events[0].data)

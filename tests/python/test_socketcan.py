@@ -23,9 +23,9 @@ from host_node import (
     lockstep,
 )
 from saddlewalk import paths
-from saddlewalk.bus import open_bus
 from saddlewalk.cli import main
 from saddlewalk.errors import UserError
+from saddlewalk.transport.bus import open_bus
 
 pytestmark = pytest.mark.socketcan
 

@@ -6,9 +6,9 @@ import time
 import can
 import pytest
 
-from saddlewalk.exoskeleton import plan_of
+from saddlewalk.emulation.exoskeleton import plan_of
 from saddlewalk.ticks import TickReader, next_tick
-from saddlewalk.wire import Sender
+from saddlewalk.transport.wire import Sender
 
 
 def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:

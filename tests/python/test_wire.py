@@ -1,4 +1,4 @@
-"""The C codec and saddlewalk.wire agree on every bit, in both directions."""
+"""The C codec and saddlewalk.transport.wire agree on every bit, in both directions."""
 
 import functools
 import math
@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from cffi import FFI
 
-from saddlewalk import paths, wire
+from saddlewalk import paths
+from saddlewalk.transport import wire
 
 SEED = 20261122
 OUTPUTS = 1000  # of 21 frames

@@ -29,9 +29,10 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     import json
 
-    from saddlewalk import bench_report, instructions
-    from saddlewalk.bench import measure
-    from saddlewalk.neighbours import MissingError
+    from saddlewalk.benchmark import instructions
+    from saddlewalk.benchmark import report as bench_report
+    from saddlewalk.benchmark.neighbours import MissingError
+    from saddlewalk.benchmark.timing import measure
     from saddlewalk.table import write_text
 
     timings = measure(args.rounds)

@@ -11,8 +11,8 @@ from saddlewalk.options import add_recordings, number_in
 if TYPE_CHECKING:
     import numpy as np
 
-    from saddlewalk.calibration import Fit
-    from saddlewalk.walk_measures import WalkMeasures
+    from saddlewalk.gait.calibration import Fit
+    from saddlewalk.gait.measures import WalkMeasures
 
 
 def add_parser(subparsers: Any) -> None:
@@ -46,11 +46,11 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
-    from saddlewalk.calibration import calibrate, checked
-    from saddlewalk.motion_capture import load_walk, read_markers
-    from saddlewalk.person_file import header_text, toml_text
+    from saddlewalk.gait.calibration import calibrate, checked
+    from saddlewalk.gait.measures import measure
+    from saddlewalk.gait.motion_capture import load_walk, read_markers
+    from saddlewalk.gait.person_file import header_text, toml_text
     from saddlewalk.table import write_text
-    from saddlewalk.walk_measures import measure
 
     markers = read_markers(Path(args.markers)) if args.markers else {}
     walks = [measure(load_walk(source, markers)) for source in args.recordings]

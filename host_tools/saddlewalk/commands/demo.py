@@ -20,9 +20,9 @@ from saddlewalk.config import host_arguments, load_config
 from saddlewalk.errors import UserError
 
 if TYPE_CHECKING:
-    from saddlewalk.emulator import Wearer
-    from saddlewalk.exoskeleton import Exoskeleton
-    from saddlewalk.recorder import Recorder
+    from saddlewalk.emulation.exoskeleton import Exoskeleton
+    from saddlewalk.emulation.wearer import Wearer
+    from saddlewalk.logs.recorder import Recorder
 
 SPEEDS = [(0.0, 0.0), (1.0, 0.8), (7.0, 1.2), (16.0, 0.0)]
 DURATION_S = 22.0
@@ -69,10 +69,10 @@ def run(args: argparse.Namespace) -> int:
         args.push = [(PUSH_N_S_KG * config.body_mass_kg, PUSH_TIME_S, PUSH_DIRECTION_DEG)]
     args.clock = _clock(args)
     lcm = _open_lcm(args.lcm)
-    from saddlewalk.bus import describe
-    from saddlewalk.emulator import Noise
-    from saddlewalk.exoskeleton import Exoskeleton
-    from saddlewalk.schedule import schedule_of
+    from saddlewalk.emulation.exoskeleton import Exoskeleton
+    from saddlewalk.emulation.wearer import Noise
+    from saddlewalk.planning.schedule import schedule_of
+    from saddlewalk.transport.bus import describe
 
     wearer = wearer_of(args, config, Noise())
     schedule = schedule_of(speeds_of(args, SPEEDS), math.radians(args.hs_angle))
@@ -104,9 +104,9 @@ def _clock(args: argparse.Namespace) -> str:
 @contextlib.contextmanager
 def _host(args: argparse.Namespace, config: Any, lcm: Any) -> "Iterator[tuple[Any, Recorder]]":
     """The bus of a new host process, and what is recorded of it from its first word on."""
-    from saddlewalk.bus import open_bus
-    from saddlewalk.host import running_host
-    from saddlewalk.recorder import Recorder
+    from saddlewalk.emulation.host import running_host
+    from saddlewalk.logs.recorder import Recorder
+    from saddlewalk.transport.bus import open_bus
 
     options = [f"--can={args.can}", f"--clock={args.clock}", *host_arguments(config)]
     options += [f"--lcm={args.lcm}"] if args.lcm else []
@@ -121,8 +121,8 @@ def _controller(
     args: argparse.Namespace, config: Any, lcm: Any
 ) -> "Iterator[tuple[Any, Recorder]]":
     """The same of an emulated controller."""
-    from saddlewalk.qemu import running_controller
-    from saddlewalk.recorder import Recorder
+    from saddlewalk.emulation.qemu import running_controller
+    from saddlewalk.logs.recorder import Recorder
 
     with running_controller(config) as controller:
         _refuse_company(controller.bus, lcm)
@@ -134,8 +134,8 @@ def _controller(
 
 def _open_lcm(url: str | None) -> Any:
     """LCM; without a route for the default URL, in a private network, where run() starts anew."""
-    from saddlewalk import private_network
-    from saddlewalk.lcmbus import open_lcm
+    from saddlewalk.transport import private_network
+    from saddlewalk.transport.lcmbus import open_lcm
 
     try:
         return open_lcm(url)
@@ -148,7 +148,7 @@ def _open_lcm(url: str | None) -> Any:
 
 def _refuse_company(bus: Any, lcm: Any) -> None:
     """Another walk on the same buses would be mixed into this one. Before anything is written."""
-    from saddlewalk.lcmbus import receive
+    from saddlewalk.transport.lcmbus import receive
 
     heard: list[str] = []
     subscription = lcm.subscribe("SADDLEWALK_.*", lambda channel, _: heard.append(channel))
@@ -168,7 +168,7 @@ def _display(args: argparse.Namespace, lcm: Any) -> Iterator[Any]:
     from rich.live import Live
 
     from saddlewalk.commands.monitor import Listener
-    from saddlewalk.exoskeleton import Observer
+    from saddlewalk.emulation.exoskeleton import Observer
 
     if args.firmware == EMULATED:
         yield Observer()
@@ -195,7 +195,7 @@ def _display(args: argparse.Namespace, lcm: Any) -> Iterator[Any]:
 
 
 def _draw(folder: Path, recorder: "Recorder", wearer: "Wearer", config: Any) -> Path:
-    from saddlewalk.pictures import draw_walk
+    from saddlewalk.pictures.walk import draw_walk
 
     picture = folder / "walk.png"
     draw_walk(recorder.csv_path, picture, wearer.pushes, config)
@@ -229,7 +229,7 @@ def level_times(recorder: "Recorder") -> str:
 
 
 def _standing(exoskeleton: "Exoskeleton") -> Check:
-    from saddlewalk.emulator import MODES, STANDING
+    from saddlewalk.emulation.wearer import MODES, STANDING
 
     if exoskeleton.mode == STANDING:
         return True, "stands at the end"
@@ -238,7 +238,7 @@ def _standing(exoskeleton: "Exoskeleton") -> Check:
 
 
 def _checks(wearer: "Wearer", exoskeleton: "Exoskeleton", recorder: "Recorder") -> list[Check]:
-    from saddlewalk.recorder import read_can_log
+    from saddlewalk.logs.recorder import read_can_log
 
     health = exoskeleton.health
     late, refused = int(health["LATE_TICKS"]), int(health["REJECTED_FRAMES"])
@@ -259,7 +259,7 @@ def _checks(wearer: "Wearer", exoskeleton: "Exoskeleton", recorder: "Recorder") 
 
 def _log_checks(args: argparse.Namespace, recorder: "Recorder", config: Any) -> list[Check]:
     """What LCM brought, and the firmware's walk computed again from the log that has its inputs."""
-    from saddlewalk.recorder import CHANNELS, read_lcm_log
+    from saddlewalk.logs.recorder import CHANNELS, read_lcm_log
 
     emulated = args.firmware == EMULATED
     channels = read_lcm_log(recorder.lcm_path)
@@ -277,9 +277,9 @@ def _log_checks(args: argparse.Namespace, recorder: "Recorder", config: Any) -> 
 
 def _rerun(log: Path, config: Any) -> Check:
     """Whether the logged inputs give the logged outputs again; what a log lost is only told."""
-    from saddlewalk.logs import is_lcm_log, load_can_log, load_lcm_log
-    from saddlewalk.rerun import rerun_lcm
-    from saddlewalk.rerun_can import rerun_can
+    from saddlewalk.logs.messages import is_lcm_log, load_can_log, load_lcm_log
+    from saddlewalk.logs.rerun import rerun_lcm
+    from saddlewalk.logs.rerun_can import rerun_can
 
     try:
         if is_lcm_log(log):

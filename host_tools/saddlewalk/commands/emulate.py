@@ -10,9 +10,9 @@ from saddlewalk.errors import UserError
 from saddlewalk.options import add_gait_options, number_in, whole_number_in
 
 if TYPE_CHECKING:
-    from saddlewalk.emulator import Noise, Push, Wearer
-    from saddlewalk.faults import Happening
-    from saddlewalk.schedule import Speeds
+    from saddlewalk.emulation.wearer import Noise, Push, Wearer
+    from saddlewalk.faults.scenario import Happening
+    from saddlewalk.planning.schedule import Speeds
 
 SPEED_M_S = 1.2
 IMPULSE_MAX_N_S = 1000.0
@@ -97,12 +97,12 @@ def push_text(text: str) -> tuple[float, float, float]:
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk.bus import describe, open_bus
-    from saddlewalk.emulator import Noise
-    from saddlewalk.exoskeleton import Exoskeleton
-    from saddlewalk.lcmbus import open_lcm
-    from saddlewalk.live_faults import faulty
-    from saddlewalk.schedule import schedule_of
+    from saddlewalk.emulation.exoskeleton import Exoskeleton
+    from saddlewalk.emulation.wearer import Noise
+    from saddlewalk.faults.live import faulty
+    from saddlewalk.planning.schedule import schedule_of
+    from saddlewalk.transport.bus import describe, open_bus
+    from saddlewalk.transport.lcmbus import open_lcm
 
     wearer = wearer_of(args, load_config(args), Noise().scaled(args.noise_scale))
     schedule = schedule_of(speeds_of(args, [(0.0, SPEED_M_S)]), math.radians(args.hs_angle))
@@ -123,7 +123,7 @@ def _happenings(args: argparse.Namespace) -> "list[Happening]":
     """What --faults says shall happen, each at a time that --seed draws."""
     import numpy as np
 
-    from saddlewalk.faults import draw, read_scenario
+    from saddlewalk.faults.scenario import draw, read_scenario
 
     if args.faults is None:
         return []
@@ -142,7 +142,7 @@ def _happenings(args: argparse.Namespace) -> "list[Happening]":
 
 def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer":
     """The wearer of `args` with the body that the firmware's configuration describes."""
-    from saddlewalk.emulator import Body, Push, Wearer
+    from saddlewalk.emulation.wearer import Body, Push, Wearer
 
     pushes = tuple(Push(*push) for push in args.push or ())
     for push in pushes:
@@ -156,7 +156,7 @@ def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer"
 
 def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":
     """What --schedule or --speed asks for."""
-    from saddlewalk.schedule import read_schedule
+    from saddlewalk.planning.schedule import read_schedule
 
     if args.schedule:
         return [(wish.from_s, wish.speed_m_s) for wish in read_schedule(args.schedule)]
@@ -165,8 +165,8 @@ def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":
 
 def events_printer(wearer: "Wearer") -> Any:
     """An observer that tells what the plan is doing, each push and a fall."""
-    from saddlewalk.emulator import MODES
-    from saddlewalk.exoskeleton import Observer
+    from saddlewalk.emulation.exoskeleton import Observer
+    from saddlewalk.emulation.wearer import MODES
 
     class Events(Observer):
         def __init__(self) -> None:

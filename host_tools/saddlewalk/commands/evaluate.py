@@ -15,9 +15,9 @@ from saddlewalk.options import add_campaign_options, whole_number_in
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from saddlewalk.detection import Detection
-    from saddlewalk.evaluation import Walk
-    from saddlewalk.gait_trials import GaitTrial
+    from saddlewalk.evaluation.detection import Detection
+    from saddlewalk.evaluation.gait_trials import GaitTrial
+    from saddlewalk.evaluation.walks import Walk
 
 WALKS = 1000
 
@@ -53,10 +53,10 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
-    from saddlewalk.detection import detection_of, push_limits, recovery_worth
-    from saddlewalk.evaluation import KINDS
-    from saddlewalk.gait_trials import judge_folder
-    from saddlewalk.region import CLAIMS, POSTURES, explore, grid
+    from saddlewalk.evaluation.detection import detection_of, push_limits, recovery_worth
+    from saddlewalk.evaluation.gait_trials import judge_folder
+    from saddlewalk.evaluation.region import CLAIMS, POSTURES, explore, grid
+    from saddlewalk.evaluation.walks import KINDS
 
     config = load_config(args)
     if args.out:
@@ -108,7 +108,7 @@ def _walk(args: argparse.Namespace, config: Any) -> list["Walk"]:
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TimeRemainingColumn
 
-    from saddlewalk.evaluation import KINDS, calm_walks, evaluate
+    from saddlewalk.evaluation.walks import KINDS, calm_walks, evaluate
 
     columns = (*Progress.get_default_columns()[:2], MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
@@ -156,7 +156,7 @@ def _tell_detection(console: "Console", detections: dict[str, "Detection"]) -> N
 
 
 def _tell_areas(console: "Console", detections: dict[str, "Detection"]) -> None:
-    from saddlewalk.evaluation import MARGINS, WINDOWS
+    from saddlewalk.evaluation.walks import MARGINS, WINDOWS
 
     for kind, detection in detections.items():
         table = _table(
@@ -170,7 +170,7 @@ def _tell_areas(console: "Console", detections: dict[str, "Detection"]) -> None:
 def _tell_limits(
     console: "Console", limits: dict[str, dict[int, float]], worth: dict[str, float]
 ) -> None:
-    from saddlewalk.evaluation import DIRECTIONS, SPEED_BINS, SPEEDS_M_S
+    from saddlewalk.evaluation.walks import DIRECTIONS, SPEED_BINS, SPEEDS_M_S
 
     low, high = SPEEDS_M_S
     for kind, cells in limits.items():
@@ -191,7 +191,7 @@ def _tell_limits(
 
 
 def _tell_confusions(console: "Console", confusions: dict[str, dict[str, dict[str, int]]]) -> None:
-    from saddlewalk.region import CLAIMS
+    from saddlewalk.evaluation.region import CLAIMS
 
     names = ("rightly_safe", "wrongly_safe", "cautious", "rightly_unsafe")
     columns = [name.replace("_", " ") for name in names]
@@ -218,7 +218,7 @@ def _tell_trials(console: "Console", trials: Sequence["GaitTrial"]) -> None:
 def _write(
     console: "Console", folder: Path, result: dict[str, Any], walks: list["Walk"], config: Any
 ) -> None:
-    from saddlewalk.evaluation_pictures import draw_region, draw_rocs
+    from saddlewalk.evaluation.pictures import draw_region, draw_rocs
     from saddlewalk.table import write_table
 
     rows = [walk.row() for walk in walks]

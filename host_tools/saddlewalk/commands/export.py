@@ -29,9 +29,9 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk import log_tables
     from saddlewalk.errors import UserError
-    from saddlewalk.logs import load_lcm_log
+    from saddlewalk.logs import tables as log_tables
+    from saddlewalk.logs.messages import load_lcm_log
 
     log = load_lcm_log(args.log)
     tables, left_out = log_tables.tables_of(log.records)

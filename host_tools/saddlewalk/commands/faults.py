@@ -12,8 +12,8 @@ from saddlewalk.config import add_body_options, load_config
 from saddlewalk.options import add_campaign_options, whole_number_in
 
 if TYPE_CHECKING:
-    from saddlewalk.fault_campaign import Outcome, Row
-    from saddlewalk.faults import Scenario
+    from saddlewalk.faults.campaign import Outcome, Row
+    from saddlewalk.faults.scenario import Scenario
 
 RUNS = 20
 LIVE_RUNS = 0
@@ -54,8 +54,8 @@ def run(args: argparse.Namespace) -> int:
     """1: an output was unsafe."""
     from rich.console import Console
 
-    from saddlewalk.fault_campaign import rows_of
-    from saddlewalk.faults import read_scenario
+    from saddlewalk.faults.campaign import rows_of
+    from saddlewalk.faults.scenario import read_scenario
     from saddlewalk.paths import CHECKOUT
 
     config = load_config(args)
@@ -72,14 +72,14 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _in_lockstep(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["Outcome"]:
-    from saddlewalk.fault_campaign import campaign
+    from saddlewalk.faults.campaign import campaign
 
     with _progress("walks", args.runs * len(scenario.faults)) as progress:
         return campaign(scenario, args.runs, args.seed, config, args.jobs, progress)
 
 
 def _live(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["Outcome"]:
-    from saddlewalk.live_faults import live_campaign, live_walks
+    from saddlewalk.faults.live import live_campaign, live_walks
 
     total = len(live_walks(scenario, args.live))
     with _progress("walks in real time", total) as progress:
@@ -128,7 +128,7 @@ def _table(rows: list["Row"], title: str) -> Any:
 
 def _name(row: "Row") -> str:
     """The class, and where the scenario says so its messages."""
-    from saddlewalk.faults import KINDS
+    from saddlewalk.faults.scenario import KINDS
 
     fault = row.fault
     if not fault.messages or fault.messages == KINDS[fault.kind].messages:

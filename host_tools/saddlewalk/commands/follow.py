@@ -10,8 +10,8 @@ from saddlewalk.config import ANKLES, add_body_options, load_config
 from saddlewalk.options import add_recordings, number_in
 
 if TYPE_CHECKING:
-    from saddlewalk.following import Deviation
-    from saddlewalk.recording import Recording
+    from saddlewalk.gait.following import Deviation
+    from saddlewalk.gait.recording import Recording
     from saddlewalk.table import Cell
 
 RMS_COLUMNS = "com_y_m com_z_m com_z_shape_m swing_x_m landing_m heel_strike_s".split()
@@ -46,10 +46,10 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
-    from saddlewalk.following import deviation
-    from saddlewalk.motion_capture import load_walk, read_markers
+    from saddlewalk.gait.following import deviation
+    from saddlewalk.gait.measures import measure
+    from saddlewalk.gait.motion_capture import load_walk, read_markers
     from saddlewalk.table import write_table
-    from saddlewalk.walk_measures import measure
 
     markers = read_markers(Path(args.markers)) if args.markers else {}
     defaults = load_config(argparse.Namespace(**{**vars(args), "config": None}))
@@ -73,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _calibrated(args: argparse.Namespace, walk: Any) -> Any:
-    from saddlewalk.calibration import calibrate, checked
+    from saddlewalk.gait.calibration import calibrate, checked
 
     if args.config:
         return load_config(args, args.ankle)

@@ -30,7 +30,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk.lcmbus import open_lcm
+    from saddlewalk.transport.lcmbus import open_lcm
 
     bus = open_lcm(args.lcm)
     listener = Listener()
@@ -57,7 +57,7 @@ class Listener:
 
     def take(self, channel: str, data: bytes) -> None:
         """A message that cannot be decoded is counted and changes nothing else."""
-        from saddlewalk import lcm_types
+        from saddlewalk.transport import lcm_types
 
         try:
             message = getattr(lcm_types, CHANNELS[channel]).decode(data)
@@ -96,7 +96,7 @@ class Listener:
 
 
 def _once(bus: Any, listener: Listener) -> int:
-    from saddlewalk.lcmbus import receive
+    from saddlewalk.transport.lcmbus import receive
 
     deadline_s = time.monotonic() + ONCE_S
     while not listener.complete and (left_s := deadline_s - time.monotonic()) > 0:
@@ -116,7 +116,7 @@ def _watch(bus: Any, listener: Listener) -> NoReturn:
 def _watch_panel(bus: Any, listener: Listener) -> NoReturn:
     from rich.live import Live
 
-    from saddlewalk.lcmbus import listen
+    from saddlewalk.transport.lcmbus import listen
 
     with Live(listener.panel(), auto_refresh=False) as live:
         while True:
@@ -125,7 +125,7 @@ def _watch_panel(bus: Any, listener: Listener) -> NoReturn:
 
 
 def _watch_lines(bus: Any, listener: Listener) -> NoReturn:
-    from saddlewalk.lcmbus import listen
+    from saddlewalk.transport.lcmbus import listen
 
     while True:
         listen(bus, LINE_S)

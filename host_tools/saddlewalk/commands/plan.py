@@ -12,13 +12,8 @@ from typing import Any
 from saddlewalk.config import ANKLES, add_body_options, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.options import add_gait_options, number_in, whole_number_in
+from saddlewalk.planning.steady import COLUMNS, row_of, walk
 from saddlewalk.table import Cell, write_table
-
-COLUMNS = (
-    "t_s phase theta_rad support com_x_m com_y_m com_z_m com_vx_m_s com_vy_m_s com_vz_m_s "
-    "left_x_m left_y_m left_z_m right_x_m right_y_m right_z_m leg_length_m theta_to_rad "
-    "theta_hs_rad s_pend s_jump s_sw mos_com_m mos_xcom_m gravity_x_n gravity_y_n"
-).split()
 
 SCHEDULE_COLUMNS = (
     *COLUMNS,
@@ -105,8 +100,8 @@ def _plan_steady(args: argparse.Namespace) -> int:
 
 
 def _plan_schedule(args: argparse.Namespace) -> int:
-    from saddlewalk import schedule
     from saddlewalk.core import Core, library
+    from saddlewalk.planning import schedule
 
     wishes = schedule.read_schedule(args.schedule)
     core = Core(load_config(args, args.ankle))
@@ -121,7 +116,7 @@ def _plan_schedule(args: argparse.Namespace) -> int:
         )
     _note_angles(args, functools.reduce(operator.or_, (i.output.limits for i in walked)))
     if args.picture is not None:
-        from saddlewalk.schedule_picture import draw_schedule
+        from saddlewalk.pictures.schedule import draw_schedule
 
         draw_schedule(args.picture, wishes, walked)
     return 0
@@ -129,7 +124,7 @@ def _plan_schedule(args: argparse.Namespace) -> int:
 
 def _until_the_end(args: argparse.Namespace, wishes: list[Any], core: Any) -> Iterator[Any]:
     """The instants of the walk: for --duration, else until it stands or 5 s after the last row."""
-    from saddlewalk import schedule
+    from saddlewalk.planning import schedule
 
     last = wishes[-1]
     until_stand = args.duration is None and last.speed_m_s == 0
@@ -144,25 +139,6 @@ def _until_the_end(args: argparse.Namespace, wishes: list[Any], core: Any) -> It
             and schedule.mode_of(instant.output.plan) == "standing"
         ):
             return
-
-
-def walk(core: Any, speed_m_s: float, hs_angle_deg: float, dt_s: float) -> Iterator[tuple]:
-    """Endless (t_s, saddle_output_t) at t = k dt, ticking in between where dt is long."""
-    from saddlewalk.core import Command, Measurement
-    from saddlewalk.schedule import LONGEST_TICK_S
-
-    command = Command(speed_m_s, math.radians(hs_angle_deg))
-    nobody = Measurement()
-    core.join(command)
-    ticks_per_row = math.ceil(dt_s / LONGEST_TICK_S)
-    yield 0.0, core.tick(0, command, nobody)
-    row = 0
-    while True:
-        for i in range(1, ticks_per_row + 1):
-            time_s = (row + i / ticks_per_row) * dt_s
-            output = core.tick(round(time_s * 1e6), command, nobody)
-        row += 1
-        yield row * dt_s, output
 
 
 def _note_angles(args: argparse.Namespace, limits: int) -> None:
@@ -180,7 +156,7 @@ def _note(text: str) -> None:
 
 def _schedule_row(core: Any, instant: Any) -> list[Cell]:
     from saddlewalk.core import TIME_MAX_S, library
-    from saddlewalk.schedule import mode_of
+    from saddlewalk.planning.schedule import mode_of
 
     plan = instant.output.plan
     scores = core.score_plan(plan)
@@ -195,39 +171,4 @@ def _schedule_row(core: Any, instant: Any) -> list[Cell]:
         *(time_s if time_s < TIME_MAX_S else None for time_s in times_s),
         " ".join(event.name for event in instant.events),
         " ".join(f"{event.t_s:.6f}" for event in instant.events),
-    ]
-
-
-def row_of(t_s: float, plan: Any, scores: Any) -> list[Cell]:
-    """The cells of COLUMNS: a saddle_plan_t and its saddle_scores_t."""
-    origin_m = plan.origin_x_nm * 1e-9
-    com, velocity = plan.com_m, plan.com_velocity_m_s
-    left, right = plan.foot_m
-    return [
-        t_s,
-        plan.phase,
-        2.0 * math.pi * plan.stride_count + plan.theta_rad,
-        "right" if plan.support else "left",
-        origin_m + com.x,
-        com.y,
-        com.z,
-        velocity.x,
-        velocity.y,
-        velocity.z,
-        origin_m + left.x,
-        left.y,
-        left.z,
-        origin_m + right.x,
-        right.y,
-        right.z,
-        plan.leg_length_m,
-        plan.toe_off_rad,
-        plan.heel_strike_rad,
-        scores.s_pend,
-        scores.s_jump,
-        scores.s_sw,
-        scores.mos_com_m,
-        scores.mos_xcom_m,
-        scores.gravity_n.x,
-        scores.gravity_n.y,
     ]

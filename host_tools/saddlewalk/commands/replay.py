@@ -11,8 +11,8 @@ from saddlewalk.config import add_body_options
 if TYPE_CHECKING:
     import numpy as np
 
-    from saddlewalk.gait_events import Gait
-    from saddlewalk.recording import Recording
+    from saddlewalk.gait.events import Gait
+    from saddlewalk.gait.recording import Recording
 
 SAMPLE_NAMES = ("healthy", "stroke")
 NUMBER_COLUMNS = "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m".split()
@@ -43,12 +43,12 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk.bus import open_bus, private_udp
     from saddlewalk.config import host_arguments, load_config
-    from saddlewalk.gait_events import analyse
-    from saddlewalk.host import running_host
-    from saddlewalk.playback import measurements, play_lockstep, play_realtime
+    from saddlewalk.emulation.host import running_host
+    from saddlewalk.gait.events import analyse
+    from saddlewalk.gait.playback import measurements, play_lockstep, play_realtime
     from saddlewalk.table import write_table
+    from saddlewalk.transport.bus import open_bus, private_udp
 
     recording = _load(args)
     gait = analyse(recording)
@@ -71,17 +71,17 @@ def run(args: argparse.Namespace) -> int:
 
 def _load(args: argparse.Namespace) -> "Recording":
     if args.sample:
-        from saddlewalk.samples import load_sample
+        from saddlewalk.gait.samples import load_sample
 
         return load_sample(args.sample)
-    from saddlewalk.recording import load_recording
+    from saddlewalk.gait.recording import load_recording
 
     return load_recording(args.trial)
 
 
 def _warn(recording: "Recording", gait: "Gait") -> None:
     """A line for what no human walk has: the firmware takes any, and this is most often a unit."""
-    from saddlewalk.walk_measures import inhuman
+    from saddlewalk.gait.measures import inhuman
 
     for quantity, value in (
         ("walking speed", gait.speed_m_s),

@@ -8,7 +8,7 @@ from saddlewalk.config import add_body_options
 from saddlewalk.errors import UserError
 
 if TYPE_CHECKING:
-    from saddlewalk.rerun import Report
+    from saddlewalk.logs.rerun import Report
 
 
 def add_parser(subparsers: Any) -> None:
@@ -29,16 +29,16 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from saddlewalk.config import load_config
-    from saddlewalk.logs import is_lcm_log, load_can_log, load_lcm_log
+    from saddlewalk.logs.messages import is_lcm_log, load_can_log, load_lcm_log
 
     if is_lcm_log(args.log):
-        from saddlewalk.rerun import rerun_lcm
+        from saddlewalk.logs.rerun import rerun_lcm
 
         _refuse_body_options(args)
         log = load_lcm_log(args.log)
         report = _named(args.log, rerun_lcm, log.records)
     else:
-        from saddlewalk.rerun_can import rerun_can
+        from saddlewalk.logs.rerun_can import rerun_can
 
         log = load_can_log(args.log)
         report = _named(args.log, rerun_can, log.records, load_config(args))

@@ -25,8 +25,8 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from saddlewalk.errors import UserError
-    from saddlewalk.java_types import lcm_program, types_jar
-    from saddlewalk.lcmbus import DEFAULT_URL, open_lcm
+    from saddlewalk.transport.java_types import lcm_program, types_jar
+    from saddlewalk.transport.lcmbus import DEFAULT_URL, open_lcm
 
     jar = types_jar()
     if args.jar:

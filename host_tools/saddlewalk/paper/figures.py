@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from saddlewalk.core import bos_polygon
-from saddlewalk.gait_events import Placement, step_pairs
+from saddlewalk.gait.events import Placement, step_pairs
 from saddlewalk.paper.numbers import ORENDURFF_M, Simulations
 from saddlewalk.paper.people import Trial, step_samples
 from saddlewalk.paper.simulations import (
@@ -27,7 +27,7 @@ from saddlewalk.paper.simulations import (
     simulate,
     simulate_as_the_paper,
 )
-from saddlewalk.pictures import BLUE, GREEN, ORANGE, PINK, RED, SKY
+from saddlewalk.pictures.walk import BLUE, GREEN, ORANGE, PINK, RED, SKY
 
 SPEED_COLOURS = dict(zip(SPEEDS_M_S, (BLUE, GREEN, ORANGE, RED), strict=True))
 ANGLE_COLOURS = dict(zip(HEEL_STRIKES_DEG, (SKY, BLUE, PINK), strict=True))

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from saddlewalk.errors import UserError
-from saddlewalk.gait_events import Gait, Placement, analyse, placements, step_pairs
-from saddlewalk.recording import Recording, load_recording
+from saddlewalk.gait.events import Gait, Placement, analyse, placements, step_pairs
+from saddlewalk.gait.recording import Recording, load_recording
 
 MANIFEST = "manifest.csv"
 

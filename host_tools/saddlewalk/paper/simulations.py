@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from saddlewalk.commands.plan import COLUMNS, row_of, walk
 from saddlewalk.config import ANKLES, DEFAULT_HEIGHT_M, DEFAULT_MASS_KG
 from saddlewalk.core import Core, ffi, library
+from saddlewalk.planning.steady import COLUMNS, row_of, walk
 
 SPEEDS_M_S = (0.7, 1.0, 1.2, 1.6)
 HEEL_STRIKES_DEG = (5, 10, 15)

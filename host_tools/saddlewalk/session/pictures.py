@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from saddlewalk.pictures import BLUE, FEET, GREEN, LANES, ORANGE
+from saddlewalk.pictures.walk import BLUE, FEET, GREEN, LANES, ORANGE
 from saddlewalk.session.quality import Trouble
 from saddlewalk.session.runs import Run, Span
 from saddlewalk.session.steps import QUANTITIES, Way

@@ -12,7 +12,7 @@ import numpy as np
 
 from saddlewalk.dashboard import SILENT_AFTER_S
 from saddlewalk.errors import UserError
-from saddlewalk.logs import CHANNEL_PREFIX, Event, decode, load_lcm_log
+from saddlewalk.logs.messages import CHANNEL_PREFIX, Event, decode, load_lcm_log
 from saddlewalk.ticks import TICK_S
 from saddlewalk.verdict import reason_words
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from saddlewalk.dashboard import FAULTS, MODES, SILENT_AFTER_S, bit_names
+from saddlewalk.gait.measures import LONGEST_STEP_S
 from saddlewalk.session.runs import Run
-from saddlewalk.walk_measures import LONGEST_STEP_S
 
 SIDES = ("left", "right")
 SWING_MIN_S = 0.12  # as the firmware has it: contact that is lost for less ends no stance

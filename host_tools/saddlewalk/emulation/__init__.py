@@ -1,0 +1,1 @@
+"""The emulated wearer and exoskeleton, and the firmware that they walk with."""

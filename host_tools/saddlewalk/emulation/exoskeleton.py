@@ -1,0 +1,285 @@
+"""The live node: an emulated wearer on the firmware's CAN bus and on LCM."""
+
+import math
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import can
+
+from saddlewalk.emulation.wearer import (
+    LEFT,
+    RIGHT,
+    STANDING,
+    STEP_S,
+    Measurement,
+    Plan,
+    RecoveryStep,
+    Wearer,
+)
+from saddlewalk.errors import UserError
+from saddlewalk.planning.schedule import Schedule
+from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages, TickReader, next_tick
+from saddlewalk.transport.wire import Sender
+from saddlewalk.verdict import level_name
+
+WAKE_UP_S = 0.01  # realtime: measurements at 100 Hz
+SILENCE_S = 3.0
+START_TICKS = 125  # that do not do as commanded, before a walk is given up: 10 s
+RESEND_S = 0.25
+
+MODE_STAND, MODE_WALK = 0, 1
+
+
+@dataclass(frozen=True)
+class Tick:
+    """One tick of the firmware: its messages by name, and the time in the wearer's walk."""
+
+    time_s: float
+    messages: Messages
+    plan: Plan | None
+
+
+class Observer:
+    """Sees what goes on; the base class looks away."""
+
+    def frame(self, frame: can.Message) -> None:
+        """Every frame sent (is_rx False) and received (True)."""
+
+    def tick(self, tick: Tick, wearer: Wearer) -> None:
+        """After the firmware's tick has come and before the wearer moves on."""
+
+    def poll(self) -> None:
+        """At least once a tick: time to read other inputs."""
+
+
+def plan_of(messages: Messages) -> Plan | None:
+    """The plan of one tick; None if the tick failed or a number of it is not available."""
+    step, swing, landing = messages["PLAN_STEP"], messages["PLAN_SWING"], messages["PLAN_LANDING"]
+    com, velocity = messages["PLAN_COM"], messages["PLAN_COM_VELOCITY"]
+    left, right = messages["PLAN_LEFT"], messages["PLAN_RIGHT"]
+    events = messages["PLAN_EVENTS"]
+    numbers = [value for part in PLAN_MESSAGES for value in messages[part].values()]
+    if not step["VALID"] or not all(map(math.isfinite, numbers)):
+        return None
+    return Plan(
+        mode=int(events["MODE"]),
+        support=int(step["SUPPORT"]),
+        step_length_m=step["STEP_LENGTH"],
+        speed_m_s=messages["PLAN_ANKLE"]["SPEED"],
+        com_m=complex(com["X"], com["Y"]),
+        velocity_m_s=complex(velocity["VX"], velocity["VY"]),
+        feet_m=(complex(left["X"], left["Y"]), complex(right["X"], right["Y"])),
+        foot_heights_m=(left["Z"], right["Z"]),
+        swing_velocity_m_s=complex(swing["VX"], swing["VY"]),
+        swing_rise_m_s=swing["VZ"],
+        time_to_via_point_s=events["TIME_TO_VIA_POINT"],
+        time_to_landing_s=events["TIME_TO_TOE_OFF"],
+        landing_m=complex(landing["X"], landing["Y"]),
+        leg_length_m=landing["LEG_LENGTH"],
+        recovery=_recovery_of(messages),
+    )
+
+
+def _recovery_of(messages: Messages) -> RecoveryStep | None:
+    told, level = messages["RECOVERY"], level_name(int(messages["VERDICT"]["LEVEL"]))
+    if not told["FOUND"]:
+        return None
+    return RecoveryStep(int(told["FOOT"]), complex(told["X"], told["Y"]), level != "stable")
+
+
+class Exoskeleton:
+    """Sends the wearer's measurements, follows the plan that comes back, publishes the truth.
+
+    A walk in progress is ended first: the own one begins when the firmware plans to stand.
+    if_silent: what the user can do when no firmware answers.
+    """
+
+    def __init__(
+        self,
+        bus: can.BusABC,
+        wearer: Wearer,
+        schedule: Schedule,
+        lcm: Any = None,
+        observers: Iterable[Observer] = (),
+        if_silent: str = "",
+    ) -> None:
+        self.reader = TickReader()
+        self.frames_sent = 0
+        self.ticks = 0
+        self.health: dict[str, float] = {}  # the newest
+        self.mode: int | None = None  # of the newest plan; None without one
+        self._bus, self._lcm, self._wearer, self._schedule = bus, lcm, wearer, schedule
+        self._observers = tuple(observers)
+        self._if_silent = if_silent
+        self._sender = Sender()
+        self._begun = False
+        self._unheeded = 0  # ticks in a row
+        self._pushed_n_s = 0j
+
+    def run(self, clock: str, duration_s: float) -> None:
+        """Walk for duration_s by the clock `realtime` or `lockstep`.
+
+        Raises UserError if the firmware is silent or plans no walk.
+        """
+        (self._run_lockstep if clock == "lockstep" else self._run_realtime)(duration_s)
+
+    def _run_lockstep(self, duration_s: float) -> None:
+        """As fast as the firmware answers: one set of measurements, one tick, 80 ms of physics."""
+        while self._wearer.time_s < duration_s - STEP_S / 2:
+            self._take(self._exchange())
+            self._advance(round(TICK_S / STEP_S))
+            self._publish_truth()
+            self._poll()
+        self._begun = False
+        self._send_command_frame()
+
+    def _run_realtime(self, duration_s: float) -> None:
+        """By the wall clock, on absolute deadlines."""
+        deadline_s = heard_s = time.monotonic()
+        wake_up = 0
+        while self._wearer.time_s < duration_s - STEP_S / 2:
+            if wake_up % round(TICK_S / WAKE_UP_S) == 0:
+                self._publish_command()
+            self._advance(round(WAKE_UP_S / STEP_S))
+            self._send_measurement()
+            self._publish_truth()
+            self._poll()
+            wake_up += 1
+            deadline_s += WAKE_UP_S
+            if self._receive_until(deadline_s):
+                heard_s = time.monotonic()
+            elif time.monotonic() - heard_s > SILENCE_S:
+                raise self._silent()
+        self._begun = False
+        self._publish_command()
+
+    def _silent(self) -> UserError:
+        silent = f"the firmware has been silent for {SILENCE_S:g} s on {self._bus.channel_info}"
+        return UserError(": ".join(filter(None, [silent, self._if_silent])))
+
+    def _exchange(self) -> Messages:
+        """Send what is measured and wait for the firmware's tick.
+
+        Firmware that heard another wearer before refuses the first set, whose counters are new; so
+        until it has answered once, the set is sent again.
+        """
+        deadline_s = time.monotonic() + SILENCE_S
+        patience_s = SILENCE_S if self.ticks else RESEND_S
+        while time.monotonic() < deadline_s:
+            self._send_command_frame()
+            self._send_measurement()
+            messages = next_tick(self._bus, self._hear, patience_s)
+            if messages:
+                return messages
+        raise self._silent()
+
+    def _receive_until(self, deadline_s: float) -> bool:
+        """Take the ticks that come by then; True if one did."""
+        ticked = False
+        while messages := next_tick(self._bus, self._hear, deadline_s - time.monotonic()):
+            self._take(messages)
+            ticked = True
+        return ticked
+
+    def _hear(self, frame: can.Message) -> Messages | None:
+        for observer in self._observers:
+            observer.frame(frame)
+        return self.reader.feed(frame)
+
+    def _take(self, messages: Messages) -> None:
+        plan = plan_of(messages)
+        self._begun = self._begun or (plan is not None and plan.mode == STANDING)
+        plan = plan if self._begun else None
+        self.ticks += 1
+        self._unheeded = self._unheeded + 1 if self._is_unheeded(plan) else 0
+        if self._unheeded > START_TICKS:
+            raise UserError(
+                f"the firmware on {self._bus.channel_info} answers but does not do as commanded: "
+                "give both the same --clock and --lcm"
+            )
+        self.health = messages["HEALTH"]
+        self.mode = plan.mode if plan else None
+        self._wearer.follow(plan)
+        tick = Tick(self._wearer.time_s, messages, plan)
+        for observer in self._observers:
+            observer.tick(tick, self._wearer)
+
+    def _is_unheeded(self, plan: Plan | None) -> bool:
+        """The firmware does not stand before the walk, or stands though it is to walk."""
+        to_walk = self._command()[0] == MODE_WALK
+        return not self._begun or (to_walk and plan is not None and plan.mode == STANDING)
+
+    def _advance(self, steps: int) -> None:
+        for _ in range(steps):
+            self._wearer.step()
+
+    def _poll(self) -> None:
+        for observer in self._observers:
+            observer.poll()
+
+    def _send(self, name: str, **signals: float) -> None:
+        frame = self._sender.frame(name, **signals)
+        frame.is_rx, frame.timestamp = False, time.time()
+        try:
+            self._bus.send(frame)
+        except can.CanOperationError:  # no room: lost, as the firmware sees by its age
+            return
+        self.frames_sent += 1
+        for observer in self._observers:
+            observer.frame(frame)
+
+    def _command(self) -> tuple[int, float, float]:
+        """Mode, speed and heel-strike angle asked for now."""
+        asked = self._schedule(self._wearer.time_s)
+        walk = self._begun and asked.speed_m_s > 0
+        return MODE_WALK if walk else MODE_STAND, asked.speed_m_s, asked.heel_strike_rad
+
+    def _send_command_frame(self) -> None:
+        mode, speed_m_s, heel_strike_rad = self._command()
+        self._send("COMMAND", MODE=mode, SPEED=speed_m_s, HEEL_STRIKE=heel_strike_rad)
+
+    def _send_measurement(self) -> None:
+        measured: Measurement = self._wearer.measure()
+        velocity = measured.velocity_m_s
+        self._send("MEASURED_COM", HEIGHT=measured.height_m, VX=velocity.real, VY=velocity.imag)
+        for side, name in ((LEFT, "MEASURED_LEFT"), (RIGHT, "MEASURED_RIGHT")):
+            foot = measured.feet_m[side]
+            self._send(name, CONTACT=measured.contact[side], X=foot.real, Y=foot.imag)
+
+    def _publish_command(self) -> None:
+        from saddlewalk.transport.lcm_types import command_t
+
+        message = command_t()
+        message.utime_us = time.time_ns() // 1000
+        message.mode, message.speed_m_s, message.heel_strike_rad = self._command()
+        self._lcm.publish("SADDLEWALK_COMMAND", message.encode())
+
+    def _publish_truth(self) -> None:
+        if self._lcm is None:
+            return
+        message = truth_message(self._wearer, self._wearer.pushed_n_s - self._pushed_n_s)
+        self._pushed_n_s = self._wearer.pushed_n_s
+        self._lcm.publish("SADDLEWALK_TRUTH", message.encode())
+
+
+def truth_message(wearer: Wearer, push_n_s: complex) -> Any:
+    """The wearer as a truth_t."""
+    from saddlewalk.transport.lcm_types import truth_t
+
+    def point(plane: complex, height: float) -> list[float]:
+        return [plane.real, plane.imag, height]
+
+    left, right = wearer.feet
+    message = truth_t()
+    message.utime_us = time.time_ns() // 1000
+    message.com_m = point(wearer.com_m, wearer.height_m)
+    message.com_velocity_m_s = point(wearer.velocity_m_s, wearer.rise_m_s)
+    message.left_m = point(left.position_m, left.height_m)
+    message.right_m = point(right.position_m, right.height_m)
+    message.cop_m = [wearer.cop_m.real, wearer.cop_m.imag]
+    message.push_n_s = [push_n_s.real, push_n_s.imag]
+    message.left_contact, message.right_contact = left.contact, right.contact
+    message.fallen = wearer.fallen
+    return message

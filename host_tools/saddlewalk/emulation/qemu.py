@@ -1,0 +1,110 @@
+"""The firmware on a controller that QEMU emulates, `firmware/port_mcu`, for the length of a `with`
+block."""
+
+import contextlib
+import os
+import shutil
+import socket
+import struct
+import subprocess
+import tempfile
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from saddlewalk.errors import UserError
+from saddlewalk.paths import CHECKOUT
+from saddlewalk.transport.slcan import SlcanBus
+
+MACHINE = "mps2-an386"
+DESCRIPTION = f"serial line of {MACHINE} in QEMU"
+IMAGE = CHECKOUT / "build-cortex-m4f/bin/saddlewalk-controller"
+STOP_TIMEOUT_S = 5.0
+_EMULATOR = "qemu-system-arm"
+_COMPILER = "arm-none-eabi-gcc"
+# As firmware/port_mcu/mps2/main.c has it.
+_SETTINGS_ADDRESS = 0x003FF000
+
+
+class Controller:
+    """A running controller: its bus, and once the block has ended, what it told of itself."""
+
+    def __init__(self, bus: SlcanBus) -> None:
+        self.bus = bus
+        self.words = ""
+
+
+@contextlib.contextmanager
+def running_controller(config: Any, clock: str = "lockstep") -> Iterator[Controller]:
+    """Starts it with a configuration; when the block ends, its bus is closed, which ends it.
+
+    Raises UserError if something is missing, or with its last words if it failed, whatever else
+    that led to in the block.
+    """
+    if problem := missing():
+        raise UserError(problem)
+    ours, theirs = socket.socketpair()
+    with tempfile.TemporaryDirectory() as folder, theirs:
+        page = Path(folder) / "settings"
+        page.write_bytes(settings_page(config, clock))
+        process = subprocess.Popen(
+            _command(page, theirs.fileno()),
+            pass_fds=[theirs.fileno()],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        theirs.close()
+        controller = Controller(SlcanBus(ours, DESCRIPTION))
+        try:
+            yield controller
+        finally:
+            controller.bus.shutdown()
+            controller.words = _last_words(process)
+            if process.returncode != 0:
+                words = controller.words or f"status {process.returncode}"
+                raise UserError(f"{DESCRIPTION}: {words}")
+
+
+def settings_page(config: Any, clock: str) -> bytes:
+    """The page of flash with a saddle_config_t, as firmware/port_mcu/settings.h lays it down."""
+    from saddlewalk.core import field_ranges
+
+    fields = {name: getattr(config, name) for name in field_ranges()}
+    names = b"".join(name.encode() + b"\0" for name in fields)
+    values = struct.pack(f"<2I{len(fields)}f", clock == "lockstep", config.ankle, *fields.values())
+    return struct.pack("<I", zlib.crc32(names + values)) + values
+
+
+def missing() -> str:
+    """What to do before a controller can run; empty if nothing is missing."""
+    if shutil.which(_EMULATOR) is None:
+        return f"{_EMULATOR} is missing: as root, apt-get install -y qemu-system-arm"
+    if IMAGE.exists():
+        return ""
+    if shutil.which(_COMPILER) is None:
+        packages = "gcc-arm-none-eabi picolibc-arm-none-eabi"
+        return f"{_COMPILER} is missing: as root, apt-get install -y {packages}"
+    return f"{IMAGE} is missing: run `make controller` in {CHECKOUT}"
+
+
+def _command(page: Path, line: int) -> list[str]:
+    return [
+        *(_EMULATOR, "-M", MACHINE, "-display", "none", "-monitor", "none"),
+        *("-chardev", f"socket,id=can,fd={line}", "-serial", "chardev:can"),
+        *("-semihosting-config", "enable=on,target=native"),
+        *("-device", f"loader,file={page},addr={_SETTINGS_ADDRESS:#x},force-raw=on"),
+        *("-kernel", os.fspath(IMAGE)),
+    ]
+
+
+def _last_words(process: subprocess.Popen) -> str:
+    """Its last line. One that does not end by itself is killed, which its status then shows."""
+    try:
+        words = process.communicate(timeout=STOP_TIMEOUT_S)[0]
+    except subprocess.TimeoutExpired:
+        process.kill()
+        words = process.communicate()[0]
+    return "".join(words.strip().splitlines()[-1:])

@@ -1,0 +1,140 @@
+"""How well falls were foretold: rates, lead times and ROC of the evaluated walks."""
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from saddlewalk.evaluation.walks import BEYOND_HELP_S, KINDS, MARGINS, WINDOWS, Walk
+from saddlewalk.verdict import level_name, reason_name
+
+
+@dataclass(frozen=True)
+class Detection:
+    """Of one kind of wearer. Shares are of 1, NaN if there was nothing to share."""
+
+    pushed: int
+    fallen: int
+    sensitivity: float  # falls with an alarm between push and fall
+    timely: float  # falls with an alarm at least BEYOND_HELP_S before
+    false_alarms: float  # pushed walks with an alarm though the wearer stayed up
+    lead_median_s: float  # from first alarm to fall
+    lead_tenth_s: float  # 10th percentile
+    walking_levels: dict[str, int]  # ticks of unperturbed steady walking
+    walking_reasons: dict[str, int]
+    moving_levels: dict[str, int]  # starts and stops included
+    calm_falls: int  # unperturbed walks that ended in a fall
+    areas: dict[str, dict[str, float]]  # by window of evidence, under the ROC of each margin
+
+    @property
+    def alarm_share(self) -> float:
+        """Of unperturbed steady walking time: announced unstable."""
+        return _share(self.walking_levels.get("unstable", 0), sum(self.walking_levels.values()))
+
+    @property
+    def moving_alarm_share(self) -> float:
+        return _share(self.moving_levels.get("unstable", 0), sum(self.moving_levels.values()))
+
+
+def detection_of(walks: Iterable[Walk]) -> Detection:
+    """Of the walks of one kind of wearer."""
+    walks = list(walks)
+    pushed = [walk for walk in walks if walk.trial.impulse_n_s > 0]
+    fallen = [walk for walk in pushed if walk.fell]
+    upright = [walk for walk in pushed if not walk.fell]
+    leads_s = np.array([walk.lead_s for walk in fallen if math.isfinite(walk.lead_s)])
+    return Detection(
+        pushed=len(pushed),
+        fallen=len(fallen),
+        sensitivity=_share(len(leads_s), len(fallen)),
+        timely=_share(int((leads_s >= BEYOND_HELP_S).sum()), len(fallen)),
+        false_alarms=_share(sum(math.isfinite(walk.alarm_at_s) for walk in upright), len(upright)),
+        lead_median_s=float(np.median(leads_s)) if len(leads_s) else math.nan,
+        lead_tenth_s=float(np.percentile(leads_s, 10)) if len(leads_s) else math.nan,
+        walking_levels=_total((walk.walking_levels for walk in walks), level_name),
+        walking_reasons=_total((walk.walking_reasons for walk in walks), reason_name),
+        moving_levels=_total((walk.moving_levels for walk in walks), level_name),
+        calm_falls=sum(walk.fell for walk in walks if walk.trial.impulse_n_s == 0),
+        areas={
+            window: {name: _area(pushed, window, name) for name in MARGINS} for window in WINDOWS
+        },
+    )
+
+
+def recovery_worth(walks: Iterable[Walk]) -> dict[str, float]:
+    """What the recovery step is worth: the same pushes, drawn without regard to any limit."""
+    fell: dict[int, dict[str, bool]] = {}
+    for walk in walks:
+        if walk.trial.impulse_n_s > 0 and walk.trial.cell < 0:
+            fell.setdefault(walk.trial.index, {})[walk.trial.kind] = walk.fell
+    planned = np.array([by_kind[KINDS[0]] for by_kind in fell.values()], dtype=bool)
+    recovery = np.array([by_kind[KINDS[1]] for by_kind in fell.values()], dtype=bool)
+    return {
+        "pushes": len(fell),
+        "both_survive": _share((~planned & ~recovery).sum(), len(fell)),
+        "recovery_alone_survives": _share((planned & ~recovery).sum(), len(fell)),
+        "planned_alone_survives": _share((~planned & recovery).sum(), len(fell)),
+        "both_fall": _share((planned & recovery).sum(), len(fell)),
+    }
+
+
+def push_limits(walks: Iterable[Walk]) -> dict[str, dict[int, float]]:
+    """Per kind and cell, N s at which half fall: the mean height of a staircase after its turn."""
+    stairs: dict[str, dict[int, list[Walk]]] = {kind: {} for kind in KINDS}
+    for walk in walks:
+        if walk.trial.cell >= 0:
+            stairs[walk.trial.kind].setdefault(walk.trial.cell, []).append(walk)
+    return {
+        kind: {cell: _height(stair) for cell, stair in sorted(cells.items())}
+        for kind, cells in stairs.items()
+    }
+
+
+def roc(walks: Sequence[Walk], window: str, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """False-alarm and detection rates of pushed walks as the threshold of a margin rises."""
+    fell, least = _evidence(walks, window, name)
+    thresholds = np.unique(least)
+    below = least[None, :] <= thresholds[:, None]
+    false = below[:, ~fell].mean(axis=1) if (~fell).any() else np.zeros(len(thresholds))
+    true = below[:, fell].mean(axis=1) if fell.any() else np.zeros(len(thresholds))
+    return np.concatenate([[0.0], false]), np.concatenate([[0.0], true])
+
+
+def _area(walks: Sequence[Walk], window: str, name: str) -> float:
+    """Share of pairs of a fall and none in which the fall had less margin; a tie is half."""
+    fell, least = _evidence(walks, window, name)
+    if not fell.any() or fell.all():
+        return math.nan
+    below = least[fell][:, None] - least[~fell][None, :]
+    return float(((below < 0) + 0.5 * (below == 0)).mean())
+
+
+def _evidence(walks: Sequence[Walk], window: str, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Which walks ended in a fall, and their least margin; without those where it is unknown."""
+    fell = np.array([walk.fell for walk in walks], dtype=bool)
+    least = np.array([walk.least[window][name] for walk in walks])
+    known = np.isfinite(least)
+    return fell[known], least[known]
+
+
+def _height(stair: list[Walk]) -> float:
+    """Geometric mean of the pushes from the first turn on; NaN before it."""
+    stair = sorted(stair, key=lambda walk: walk.trial.index)
+    turns = [k for k in range(1, len(stair)) if stair[k].fell != stair[k - 1].fell]
+    if not turns:
+        return math.nan
+    heights = [walk.trial.impulse_n_s for walk in stair[turns[0] :]]
+    return float(np.exp(np.mean(np.log(heights))))
+
+
+def _total(counts: Iterable[dict[int, int]], name: Callable[[int], str]) -> dict[str, int]:
+    total: Counter[int] = Counter()
+    for each in counts:
+        total.update(each)
+    return {name(code): total[code] for code in sorted(total)}
+
+
+def _share(part: float, whole: int) -> float:
+    return float(part) / whole if whole else math.nan

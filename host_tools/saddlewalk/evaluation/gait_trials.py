@@ -1,0 +1,110 @@
+"""Recorded walks of people who did not fall, judged by the core: whatever it announces is false."""
+
+import csv
+import math
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from saddlewalk.core import Command, Core, Measurement, ffi, library
+from saddlewalk.errors import UserError
+from saddlewalk.gait.events import Gait, analyse
+from saddlewalk.gait.playback import measurements
+from saddlewalk.gait.recording import Recording, load_recording
+from saddlewalk.ticks import Messages
+from saddlewalk.verdict import level_name, reason_name, ticks_in
+
+MANIFEST = "manifest.csv"  # beside the trials: file, height_m, mass_kg where they are known
+
+
+@dataclass(frozen=True)
+class GaitTrial:
+    """Ticks between the first heel strike and the last."""
+
+    name: str
+    height_m: float
+    speed_m_s: float
+    levels: dict[str, int]
+    reasons: dict[str, int]  # of the ticks that are not stable
+
+
+def judge_folder(folder: Path, config: Any) -> list[GaitTrial]:
+    """Every CSV of a folder, each with the body of its manifest or else that of config.
+
+    Raises UserError if there is none, or one cannot be read.
+    """
+    bodies = _bodies(folder / MANIFEST)
+    paths = sorted(path for path in folder.glob("*.csv") if path.name != MANIFEST)
+    if not paths:
+        raise UserError(f"--gait {folder}: no trials: give a folder with CSV files")
+    return [judge(path, _with_body(config, bodies.get(path.name, {}))) for path in paths]
+
+
+def judge(path: Path, config: Any) -> GaitTrial:
+    recording = load_recording(str(path))
+    gait = analyse(recording)
+    core, levels, reasons = Core(config), [], []
+    from_s, to_s = _walking(recording, gait)
+    for time_s, messages in measurements(recording, gait.contact):
+        verdict = core.tick(round(time_s * 1e6), Command(), _measurement(messages)).verdict
+        if from_s <= time_s <= to_s:
+            levels.append(level_name(verdict.level))
+            if verdict.level != library().SADDLE_LEVEL_STABLE:
+                reasons.append(reason_name(verdict.reason))
+    return GaitTrial(
+        name=path.stem,
+        height_m=config.body_height_m,
+        speed_m_s=gait.speed_m_s,
+        levels=ticks_in(levels),
+        reasons=dict(Counter(reasons)),
+    )
+
+
+def _walking(recording: Recording, gait: Gait) -> tuple[float, float]:
+    """From the first heel strike to the last, s from the start of the trial; the whole without."""
+    strikes = np.concatenate([foot.heel_strikes for foot in gait.events])
+    if len(strikes) == 0:
+        return 0.0, math.inf
+    since_start_s = recording.time_s - recording.time_s[0]
+    return float(since_start_s[strikes.min()]), float(since_start_s[strikes.max()])
+
+
+def _measurement(messages: Messages) -> Measurement:
+    com, left, right = (messages[f"MEASURED_{name}"] for name in ("COM", "LEFT", "RIGHT"))
+
+    def known(*values: float) -> tuple[float, ...] | None:
+        return values if all(map(math.isfinite, values)) else None
+
+    height = known(com["HEIGHT"])
+    return Measurement(
+        com_height_m=height[0] if height else None,
+        com_velocity_m_s=known(com["VX"], com["VY"]),
+        left_cop_m=known(left["X"], left["Y"]),
+        right_cop_m=known(right["X"], right["Y"]),
+        left_contact=bool(left["CONTACT"]),
+        right_contact=bool(right["CONTACT"]),
+    )
+
+
+def _bodies(manifest: Path) -> dict[str, dict[str, float]]:
+    """Fields of saddle_config_t by file name; without a manifest, none."""
+    if not manifest.exists():
+        return {}
+    fields = {"height_m": "body_height_m", "mass_kg": "body_mass_kg"}
+    with manifest.open(newline="") as file:
+        return {
+            row["file"]: {
+                field: float(row[column]) for column, field in fields.items() if row.get(column)
+            }
+            for row in csv.DictReader(file)
+        }
+
+
+def _with_body(config: Any, body: dict[str, float]) -> Any:
+    fitted = ffi().new("saddle_config_t *", config[0])
+    for field, value in body.items():
+        setattr(fitted, field, value)
+    return fitted

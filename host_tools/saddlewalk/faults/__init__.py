@@ -1,0 +1,1 @@
+"""A bus that misbehaves: scenarios, campaigns, and what counts as unsafe."""

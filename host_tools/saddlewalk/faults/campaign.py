@@ -1,0 +1,259 @@
+"""Emulated walks on which faults happen, and whether the firmware stayed safe.
+
+In lockstep a walk goes by a clock of its own, in one process: frames and their codec, CRC, counters
+and ages are those of the firmware's libraries, and nothing else decides when a frame arrives.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from typing import Any
+
+import can
+import numpy as np
+
+from saddlewalk import core
+from saddlewalk.emulation.closed_loop import STEPS_A_TICK
+from saddlewalk.emulation.exoskeleton import plan_of
+from saddlewalk.emulation.wearer import STANDING, Body, Wearer
+from saddlewalk.faults.judge import STATES, Judge
+from saddlewalk.faults.scenario import MEASURED, Fault, Happening, Line, Scenario, draw
+from saddlewalk.firmware import config_of, ffi, library
+from saddlewalk.ticks import TICK_S, Messages, TickReader
+from saddlewalk.transport import wire
+
+HEEL_STRIKE_RAD = 0.17
+CLOCK_BEGIN_S = 4000.0  # so that the clock may jump back
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one walk. Ticks count from the one after the fault began, which is 0."""
+
+    fault: Fault
+    live: bool
+    detected: int | None  # the tick in which the firmware said that something is amiss
+    state: str  # of STATES
+    flaws: tuple[str, ...]  # none: safe
+    blind: int  # ticks with a level for data that are older than the limit, as only we know
+    forged: int  # frames of others that were taken for good
+    fell: bool
+
+
+class Device:
+    """The firmware as saddlewalk-host runs it, but in this process and by the caller's clock."""
+
+    def __init__(self, config: Any) -> None:
+        """config: a saddle_config_t of saddlewalk.config."""
+        lib = library()
+        self._context = ffi().new("saddle_context_t *")
+        self._inbox = ffi().new("saddle_inbox_t *")
+        self._output = ffi().new("saddle_output_t *")
+        self._health = ffi().new("saddle_wire_health_t *")
+        self._frames = ffi().new("saddle_frame_t[]", 21)
+        self._reader = TickReader()
+        self._ticks = 0
+        lib.saddle_init(self._context, config_of(config))
+        lib.saddle_inbox_init(self._inbox, lib.SADDLE_SOURCE_NONE)
+
+    def take(self, frame: can.Message, time_us: int) -> bool:
+        """A frame that came at time_us; whether it was accepted."""
+        before = self._inbox.receiver.accepted
+        data = bytes(frame.data)
+        library().saddle_inbox_take_frame(
+            self._inbox, frame.arbitration_id, data, len(data), time_us
+        )
+        return self._inbox.receiver.accepted != before
+
+    def tick(self, time_us: int) -> Messages:
+        """One tick, as it is told on CAN."""
+        lib, output = library(), self._output
+        lib.saddle_tick(self._context, lib.saddle_inbox_read(self._inbox, time_us), output)
+        self._tell_health()
+        lib.saddle_wire_encode_output(output, self._health, self._ticks % 16, self._frames)
+        self._ticks += 1
+        if output.faults & lib.SADDLE_FAULT_COMMAND_STALE and output.plan.mode == STANDING:
+            lib.saddle_inbox_release(self._inbox)
+        messages = None
+        for frame in self._frames:
+            told = can.Message(arbitration_id=frame.id, is_extended_id=False, data=frame.data)
+            messages = self._reader.feed(told)
+        return messages
+
+    def _tell_health(self) -> None:
+        health, inbox, receiver = self._health, self._inbox, self._inbox.receiver
+        measured = inbox.input.measurement
+        health.rejected_frames = library().saddle_inbox_rejected(inbox)
+        health.input_age_us = (
+            inbox.input.command_age_us,
+            measured.com.age_us,
+            measured.foot[0].age_us,
+            measured.foot[1].age_us,
+        )
+        health.command_source = inbox.authority
+        for count in ("accepted", "malformed", "bad_crc", "bad_version", "bad_counter"):
+            setattr(health, count, getattr(receiver, count))
+
+
+def run(
+    scenario: Scenario, index: int, number: int, seed: int, config: Any
+) -> tuple[Outcome, list[Messages]]:
+    """Walk `number` with the scenario's fault `index`, in lockstep; all that was told, too."""
+    random = np.random.default_rng([seed, index, number])
+    fault = scenario.faults[index]
+    happening = draw(fault, random)
+    line = Line([happening], random)
+    asked = Asked(float(random.uniform(*scenario.speed_m_s)))
+    wearer = Wearer(Body.of(config), seed=int(random.integers(2**32)))
+    device, sender = Device(config), wire.Sender()
+    judge = Judge(config, core.library().saddle_body(config), happening.begin_s)
+    told = []
+    for tick in range(round(scenario.duration_s / TICK_S)):
+        walk_s = tick * TICK_S
+        for name, signals in (asked.signals, *measured_signals(wearer)):
+            line.send(sender.frame(name, **signals), walk_s)
+        if not _stalled(happening, walk_s):
+            for arrival in line.due(walk_s):
+                came_s = _clock_s(happening, arrival.time_s)
+                if device.take(arrival.frame, round(came_s * 1e6)):
+                    judge.arrived(arrival, came_s)
+            clock_s = _clock_s(happening, walk_s)
+            told.append(device.tick(round(clock_s * 1e6)))
+            judge.begin_s = max(happening.begin_s, _onset_s(happening, line))
+            judge.tick(told[-1], walk_s, clock_s)
+            wearer.follow(plan_of(told[-1]))
+        for _ in range(STEPS_A_TICK):
+            wearer.step()
+    return outcome_of(fault, False, judge, wearer), told
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A walk that goes on for ever."""
+
+    speed_m_s: float
+
+    @property
+    def signals(self) -> tuple[str, dict[str, float]]:
+        values = {"MODE": 1, "SPEED": self.speed_m_s, "HEEL_STRIKE": HEEL_STRIKE_RAD}
+        return "COMMAND", values
+
+
+def measured_signals(wearer: Wearer) -> list[tuple[str, dict[str, float]]]:
+    """What the wearer's sensors tell now, as the messages that carry it."""
+    measured = wearer.measure()
+    velocity = measured.velocity_m_s
+    com = {"HEIGHT": measured.height_m, "VX": velocity.real, "VY": velocity.imag}
+    feet = (
+        (name, {"CONTACT": contact, "X": foot.real, "Y": foot.imag})
+        for name, contact, foot in zip(MEASURED[1:], measured.contact, measured.feet_m, strict=True)
+    )
+    return [("MEASURED_COM", com), *feet]
+
+
+def _stalled(happening: Happening, walk_s: float) -> bool:
+    stalls = happening.kind == "stall"
+    return stalls and happening.begin_s <= walk_s < happening.begin_s + happening.strength
+
+
+def _clock_s(happening: Happening, walk_s: float) -> float:
+    """The firmware's clock."""
+    jumped = happening.kind == "clock" and walk_s >= happening.begin_s
+    return CLOCK_BEGIN_S + walk_s + (happening.strength if jumped else 0.0)
+
+
+def _onset_s(happening: Happening, line: Line) -> float:
+    """When the fault first did something."""
+    return line.onset_s if happening.is_of_frames and happening.kind != "none" else 0.0
+
+
+def outcome_of(fault: Fault, live: bool, judge: Judge, wearer: Wearer) -> Outcome:
+    return Outcome(
+        fault=fault,
+        live=live,
+        detected=judge.detected,
+        state=judge.state,
+        flaws=tuple(sorted(judge.flaws)),
+        blind=judge.blind,
+        forged=judge.forged,
+        fell=wearer.fallen,
+    )
+
+
+def campaign(
+    scenario: Scenario,
+    runs: int,
+    seed: int,
+    config: Any,
+    jobs: int,
+    progress: Callable[[int], None],
+) -> list[Outcome]:
+    """`runs` walks with each fault, in lockstep; the same whatever `jobs`. progress(walks done)."""
+    image = bytes(core.ffi().buffer(config))
+    with ProcessPoolExecutor(jobs) as pool:
+        futures = {
+            pool.submit(_work, scenario, index, runs, seed, image): index
+            for index in range(len(scenario.faults))
+        }
+        done: dict[int, list[Outcome]] = {}
+        try:
+            for future in as_completed(futures):
+                done[futures[future]] = future.result()
+                progress(runs * len(done))
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return [outcome for index in sorted(done) for outcome in done[index]]
+
+
+def _work(scenario: Scenario, index: int, runs: int, seed: int, image: bytes) -> list[Outcome]:
+    config = core.ffi().new("saddle_config_t *")
+    core.ffi().memmove(config, image, len(image))
+    return [run(scenario, index, number, seed, config)[0] for number in range(runs)]
+
+
+@dataclass(frozen=True)
+class Row:
+    """All walks with one fault."""
+
+    fault: Fault
+    live: bool
+    runs: int
+    detected: int
+    median_ticks: float  # to detection; NaN: none was detected
+    max_ticks: float
+    states: dict[str, int]  # of STATES, those reached
+    unsafe: int  # walks with a flaw
+    flaws: dict[str, int]
+    blind: int  # ticks, the most of a walk
+    forged: int
+    fell: int
+
+
+def rows_of(outcomes: Iterable[Outcome]) -> list[Row]:
+    """In the order of the outcomes."""
+    groups: dict[tuple[Fault, bool], list[Outcome]] = {}
+    for outcome in outcomes:
+        groups.setdefault((outcome.fault, outcome.live), []).append(outcome)
+    return [_row(fault, live, group) for (fault, live), group in groups.items()]
+
+
+def _row(fault: Fault, live: bool, outcomes: list[Outcome]) -> Row:
+    ticks = [outcome.detected for outcome in outcomes if outcome.detected is not None]
+    states = Counter(outcome.state for outcome in outcomes)
+    return Row(
+        fault=fault,
+        live=live,
+        runs=len(outcomes),
+        detected=len(ticks),
+        median_ticks=float(np.median(ticks)) if ticks else math.nan,
+        max_ticks=float(max(ticks, default=math.nan)),
+        states={state: states[state] for state in STATES if states[state]},
+        unsafe=sum(bool(outcome.flaws) for outcome in outcomes),
+        flaws=dict(Counter(flaw for outcome in outcomes for flaw in outcome.flaws)),
+        blind=max(outcome.blind for outcome in outcomes),
+        forged=sum(outcome.forged for outcome in outcomes),
+        fell=sum(outcome.fell for outcome in outcomes),
+    )

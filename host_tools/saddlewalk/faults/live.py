@@ -1,0 +1,217 @@
+"""Walks in real time on which faults happen: the emulated wearer's frames, the host process."""
+
+import math
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
+from typing import Any
+
+import can
+import numpy as np
+
+from saddlewalk import core
+from saddlewalk.config import host_arguments
+from saddlewalk.emulation.exoskeleton import Exoskeleton, Observer, Tick
+from saddlewalk.emulation.host import running_host
+from saddlewalk.emulation.wearer import Body, Wearer
+from saddlewalk.faults.campaign import HEEL_STRIKE_RAD, Outcome, outcome_of
+from saddlewalk.faults.judge import Judge
+from saddlewalk.faults.scenario import MEASURED, MESSAGES, Happening, Line, Scenario, draw
+from saddlewalk.planning.schedule import schedule_of
+from saddlewalk.transport import wire
+from saddlewalk.transport.bus import open_bus, private_udp
+from saddlewalk.transport.lcmbus import open_lcm
+
+AT_ONCE = 4  # they hardly compute, but must not wait for each other
+SLACK_S = 0.1  # from the firmware's tick until it is judged
+STALL_MAX_S = 2.0  # the wearer gives up a firmware that is silent for longer
+OF_FRAMES_ONLY = ("duplicate", "flip", "spoof")  # not of commands, which go by LCM
+_AGES = dict(zip(MESSAGES, ("COMMAND_AGE", "COM_AGE", "LEFT_AGE", "RIGHT_AGE"), strict=True))
+
+
+class FaultyBus:
+    """A bus on which frames that are sent go by a Line. Delayed ones are sent when it is used."""
+
+    def __init__(self, bus: can.BusABC, line: Line, now_s: Callable[[], float]) -> None:
+        self._bus, self._line, self._now_s = bus, line, now_s
+        self.sent_s: dict[str, float] = {}  # the last of each message that got through
+        self.channel_info = bus.channel_info
+
+    def send(self, frame: can.Message) -> None:
+        self._line.send(frame, self._now_s())
+        self._forward()
+
+    def recv(self, timeout: float | None = None) -> can.Message | None:
+        self._forward()
+        return self._bus.recv(timeout)
+
+    def _forward(self) -> None:
+        for arrival in self._line.due(self._now_s()):
+            self._bus.send(arrival.frame)
+            self.sent_s[wire.message_name(arrival.frame.arbitration_id)] = self._now_s()
+
+
+class FaultyLcm:
+    """LCM on which commands go by a Line. They have neither CRC nor counter there."""
+
+    def __init__(self, lcm: Any, line: Line, now_s: Callable[[], float]) -> None:
+        self._lcm, self._line, self._now_s = lcm, line, now_s
+        self._sender = wire.Sender()
+
+    def publish(self, channel: str, data: bytes) -> None:
+        from saddlewalk.transport.lcm_types import command_t
+
+        if channel != "SADDLEWALK_COMMAND":
+            self._lcm.publish(channel, data)
+            return
+        told = command_t.decode(data)
+        numbers = {"SPEED": told.speed_m_s, "HEEL_STRIKE": told.heel_strike_rad}
+        self._line.send(self._sender.frame("COMMAND", MODE=told.mode, **numbers), self._now_s())
+        for arrival in self._line.due(self._now_s()):
+            if arrival.forged:  # what is flipped there, UDP drops; nobody else speaks
+                continue
+            signals = wire.signals(arrival.frame)
+            told.mode, told.speed_m_s = int(signals["MODE"]), signals["SPEED"]
+            told.heel_strike_rad = signals["HEEL_STRIKE"]
+            self._lcm.publish(channel, told.encode())
+
+
+def faulty(
+    bus: can.BusABC, lcm: Any, happenings: Sequence[Happening], seed: int
+) -> tuple[FaultyBus, FaultyLcm]:
+    """Both with all of these faults, from now on."""
+    begin_s = time.monotonic()
+
+    def now_s() -> float:
+        return time.monotonic() - begin_s
+
+    frames, commands = (Line(happenings, np.random.default_rng([seed, way])) for way in range(2))
+    return FaultyBus(bus, frames, now_s), FaultyLcm(lcm, commands, now_s)
+
+
+class _Judging(Observer):
+    """The judge of a live walk: ages are those that the firmware tells, but none is younger than
+    the last frame that was sent."""
+
+    def __init__(self, judge: Judge, happening: Happening, lines: tuple[Line, ...]) -> None:
+        self.sent_s: dict[str, float] = {}
+        self._judge, self._happening, self._lines = judge, happening, lines
+        self._begin_s = time.monotonic()
+
+    def now_s(self) -> float:
+        return time.monotonic() - self._begin_s
+
+    def tick(self, tick: Tick, wearer: Wearer) -> None:
+        now_s, told = self.now_s(), self._judge.told
+        for name, age in _AGES.items():
+            came_s = now_s - tick.messages["INPUTS"][age] / 1000
+            if name != "COMMAND":
+                came_s = min(came_s, self.sent_s.get(name, -math.inf) + SLACK_S)
+            told[name].came_s, told[name].born_s, told[name].usable_s = came_s, now_s, now_s
+        self._judge.walk_commanded = tick.plan is not None and not self._is_misled()
+        self._judge.begin_s = self._onset_s()
+        self._judge.tick(tick.messages, now_s, now_s)
+
+    def _is_misled(self) -> bool:
+        """The commands themselves may be to stand."""
+        happening = self._happening
+        return happening.kind in ("noise", "bias") and "COMMAND" in happening.messages
+
+    def _onset_s(self) -> float:
+        if not self._happening.is_of_frames or self._happening.kind == "none":
+            return self._happening.begin_s
+        return min(line.onset_s for line in self._lines)
+
+
+def live_walks(scenario: Scenario, each: int) -> list[tuple[int, int]]:
+    """Which faults by which number: `each` walks of a class, by turns with its strengths."""
+    walks = []
+    for kind in dict.fromkeys(fault.kind for fault in scenario.faults):
+        indices = [
+            index
+            for index, fault in enumerate(scenario.faults)
+            if fault.kind == kind and _can_happen(kind, fault.strength)
+        ]
+        chosen = np.linspace(len(indices) - 1, 0, each).round().astype(int) if indices else []
+        walks += [(indices[place], number) for number, place in enumerate(chosen)]
+    return walks
+
+
+def _can_happen(kind: str, strength: float) -> bool:
+    return kind != "clock" and not (kind == "stall" and strength > STALL_MAX_S)
+
+
+def live_campaign(
+    scenario: Scenario, each: int, seed: int, config: Any, progress: Callable[[int], None]
+) -> list[Outcome]:
+    """Some at once, each on a bus and an LCM group of its own. progress(walks done)."""
+    image = bytes(core.ffi().buffer(config))
+    walks = live_walks(scenario, each)
+    with ProcessPoolExecutor(AT_ONCE) as pool:
+        futures = [pool.submit(_work, scenario, *walk, seed, image) for walk in walks]
+        try:
+            for done, _ in enumerate(as_completed(futures), 1):
+                progress(done)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return [future.result() for future in futures]
+
+
+def _work(scenario: Scenario, index: int, number: int, seed: int, image: bytes) -> Outcome:
+    config = core.ffi().new("saddle_config_t *")
+    core.ffi().memmove(config, image, len(image))
+    return run_live(scenario, index, number, seed, config)
+
+
+def run_live(scenario: Scenario, index: int, number: int, seed: int, config: Any) -> Outcome:
+    """Walk `number` with the scenario's fault `index`, with saddlewalk-host, by the wall clock.
+
+    Raises UserError if the host or LCM cannot run.
+    """
+    random = np.random.default_rng([seed, index, number, 1])
+    fault = scenario.faults[index]
+    happening = draw(fault, random)
+    if happening.kind in OF_FRAMES_ONLY:
+        happening = replace(happening, messages=MEASURED)
+    frames, commands = (Line([happening], random) for _ in range(2))
+    wearer = Wearer(Body.of(config), seed=int(random.integers(2**32)))
+    speed_m_s = float(random.uniform(*scenario.speed_m_s))
+    judge = Judge(config, core.library().saddle_body(config), math.inf)
+    spec = private_udp()
+    url = f"udpm://239.255.76.67:{spec.rpartition(':')[2]}?ttl=0"
+    options = (f"--can={spec}", f"--lcm={url}", *host_arguments(config))
+    with running_host(*options) as host, open_bus(spec) as bus:
+        observer = _Judging(judge, happening, (frames, commands))
+        faulty_bus = FaultyBus(bus, frames, observer.now_s)
+        observer.sent_s = faulty_bus.sent_s
+        exoskeleton = Exoskeleton(
+            faulty_bus,
+            wearer,
+            schedule_of([(0.0, speed_m_s)], HEEL_STRIKE_RAD),
+            FaultyLcm(open_lcm(url), commands, observer.now_s),
+            [observer],
+        )
+        stalls = _stalls(host, happening)
+        exoskeleton.run("realtime", scenario.duration_s)
+        for stall in stalls:
+            stall.join()
+    return outcome_of(fault, True, judge, wearer)
+
+
+def _stalls(host: subprocess.Popen, happening: Happening) -> list[threading.Timer]:
+    """Stops the process and lets it go on, at its times."""
+    if happening.kind != "stall":
+        return []
+    begin_s, end_s = happening.begin_s, happening.begin_s + happening.strength
+    timers = [
+        threading.Timer(begin_s, host.send_signal, [signal.SIGSTOP]),
+        threading.Timer(end_s, host.send_signal, [signal.SIGCONT]),
+    ]
+    for timer in timers:
+        timer.start()
+    return timers

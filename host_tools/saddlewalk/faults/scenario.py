@@ -1,0 +1,365 @@
+"""Faults on the way from the emulated wearer to the firmware, by a scenario file.
+
+A scenario is a TOML file, such as `examples/faults.toml`: a `[walk]`, and `[[fault]]` tables, each
+of a class of KINDS with its strengths. Faults happen to frames, between what is measured and the
+bus; only `clock` and `stall` happen to the firmware itself. Times are seconds of the walk.
+"""
+
+import heapq
+import itertools
+import math
+import tomllib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import can
+import numpy as np
+
+from saddlewalk.errors import UserError
+from saddlewalk.transport import wire
+
+MESSAGES = ("COMMAND", "MEASURED_COM", "MEASURED_LEFT", "MEASURED_RIGHT")
+MEASURED = MESSAGES[1:]
+FRAME_BITS = 8 * wire.FRAME_LENGTH
+BURSTS_HZ = 1.0
+FLIPPED_SHARE = 0.5  # of the frames have flipped bits
+LONGEST_S = 3600.0
+
+_NUMBERS = {
+    "COMMAND": ("SPEED", "HEEL_STRIKE"),
+    "MEASURED_COM": ("HEIGHT", "VX", "VY"),
+    "MEASURED_LEFT": ("X", "Y"),
+    "MEASURED_RIGHT": ("X", "Y"),
+}
+
+
+@dataclass(frozen=True, order=True)
+class Arrival:
+    """A frame that gets to the firmware at time_s."""
+
+    time_s: float
+    order: int  # of those that arrive at once
+    frame: can.Message = field(compare=False)
+    born_s: float = field(compare=False)  # when what it tells was so
+    forged: bool = field(default=False, compare=False)  # bits flipped, or of another sender
+
+
+Disturbance = Callable[[Arrival], list[Arrival]]  # the same object where nothing happens
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A class of faults; `disturb` None: happens to the firmware, not to frames."""
+
+    strength: str  # what it is, with its unit
+    low: float
+    high: float
+    disturb: Callable[[float, np.random.Generator], Disturbance] | None
+    messages: tuple[str, ...] = MESSAGES
+
+
+def _none(_: float, __: np.random.Generator) -> Disturbance:
+    return lambda arrival: [arrival]
+
+
+def _loss(share: float, random: np.random.Generator) -> Disturbance:
+    return lambda arrival: [] if random.random() < share else [arrival]
+
+
+def _burst(length_s: float, random: np.random.Generator) -> Disturbance:
+    """All frames are lost for a while; the first time at once, then at random times."""
+    begin_s = -math.inf
+
+    def disturb(arrival: Arrival) -> list[Arrival]:
+        nonlocal begin_s
+        if math.isinf(begin_s):
+            begin_s = arrival.time_s
+        while arrival.time_s >= begin_s + length_s:
+            begin_s += length_s + random.exponential(1 / BURSTS_HZ)
+        return [] if arrival.time_s >= begin_s else [arrival]
+
+    return disturb
+
+
+def _delay(delay_s: float, _: np.random.Generator) -> Disturbance:
+    return lambda arrival: [replace(arrival, time_s=arrival.time_s + delay_s)]
+
+
+def _reorder(within_s: float, random: np.random.Generator) -> Disturbance:
+    return lambda arrival: [replace(arrival, time_s=arrival.time_s + random.random() * within_s)]
+
+
+def _duplicate(copies: float, _: np.random.Generator) -> Disturbance:
+    return lambda arrival: [arrival, *[replace(arrival) for _ in range(round(copies))]]
+
+
+def _stuck(_: float, __: np.random.Generator) -> Disturbance:
+    """Every frame tells what the first one told, with a counter that goes on."""
+    first: dict[int, Arrival] = {}
+
+    def disturb(arrival: Arrival) -> list[Arrival]:
+        held = first.setdefault(arrival.frame.arbitration_id, arrival)
+        if held is arrival:
+            return [arrival]
+        counter = wire.signals(arrival.frame)["COUNTER"]
+        frame = wire.changed(held.frame, COUNTER=counter)
+        return [replace(arrival, frame=frame, born_s=held.born_s)]
+
+    return disturb
+
+
+def _added(arrival: Arrival, amount: Callable[[str], float]) -> list[Arrival]:
+    """Something added to each number of a frame; amount(signal) in its unit."""
+    told = wire.signals(arrival.frame)
+    names = _NUMBERS[wire.message_name(arrival.frame.arbitration_id)]
+    numbers = {name: told[name] + amount(name) for name in names}
+    return [replace(arrival, frame=wire.changed(arrival.frame, **numbers))]
+
+
+def _noise(deviation: float, random: np.random.Generator) -> Disturbance:
+    return lambda arrival: _added(arrival, lambda _: random.normal(0.0, deviation))
+
+
+def _bias(size: float, random: np.random.Generator) -> Disturbance:
+    """The same for ever, up or down, of each number of each message."""
+    signs: dict[tuple[int, str], float] = {}
+
+    def disturb(arrival: Arrival) -> list[Arrival]:
+        identifier = arrival.frame.arbitration_id
+        return _added(
+            arrival,
+            lambda name: size * signs.setdefault((identifier, name), random.choice((-1.0, 1.0))),
+        )
+
+    return disturb
+
+
+def _flip(bits: float, random: np.random.Generator) -> Disturbance:
+    def disturb(arrival: Arrival) -> list[Arrival]:
+        if random.random() >= FLIPPED_SHARE:
+            return [arrival]
+        data = bytearray(arrival.frame.data)
+        for bit in random.choice(FRAME_BITS, round(bits), replace=False).tolist():
+            data[bit // 8] ^= 1 << bit % 8
+        frame = can.Message(arrival.frame.timestamp, arrival.frame.arbitration_id, False, data=data)
+        return [replace(arrival, frame=frame, forged=True)]
+
+    return disturb
+
+
+def _spoof(share: float, random: np.random.Generator) -> Disturbance:
+    """After a share of the frames comes another sender's: its counter is out of step, its CRC is
+    right, and it tells something else."""
+
+    def disturb(arrival: Arrival) -> list[Arrival]:
+        if random.random() >= share:
+            return [arrival]
+        told = wire.signals(arrival.frame)
+        steps = (0, *range(wire.COUNTER_STEP_MAX + 1, wire.COUNTERS))
+        other = {"COUNTER": (told["COUNTER"] + int(random.choice(steps))) % wire.COUNTERS}
+        name = wire.message_name(arrival.frame.arbitration_id)
+        if name == "COMMAND":
+            other |= {"MODE": int(random.integers(2)), "SPEED": float(random.uniform(0, 2))}
+        else:
+            numbers = {signal: float(random.normal(told[signal], 0.5)) for signal in _NUMBERS[name]}
+            other |= numbers
+        return [arrival, replace(arrival, frame=wire.changed(arrival.frame, **other), forged=True)]
+
+    return disturb
+
+
+def _nan(share: float, random: np.random.Generator) -> Disturbance:
+    def disturb(arrival: Arrival) -> list[Arrival]:
+        if random.random() >= share:
+            return [arrival]
+        names = _NUMBERS[wire.message_name(arrival.frame.arbitration_id)]
+        broken = {str(random.choice(names)): math.nan}
+        return [replace(arrival, frame=wire.changed(arrival.frame, **broken))]
+
+    return disturb
+
+
+KINDS = {
+    "none": Kind("of nothing", 0, 0, _none),
+    "loss": Kind("share of the frames that are lost", 0, 1, _loss),
+    "burst": Kind("how long all frames are lost, about once a second, s", 0, LONGEST_S, _burst),
+    "delay": Kind("how much later frames come, s", 0, LONGEST_S, _delay),
+    "duplicate": Kind("copies of each frame", 0, 100, _duplicate),
+    "reorder": Kind("frames come up to so much later, each its own time, s", 0, 60, _reorder),
+    "stuck": Kind("of nothing: it repeats its first values", 0, 1, _stuck, MEASURED),
+    "noise": Kind("standard deviation in m, m/s and rad", 0, 1000, _noise),
+    "bias": Kind("added to or taken from each number, m, m/s and rad", 0, 1000, _bias),
+    "flip": Kind(f"bits flipped in {FLIPPED_SHARE:.0%} of the frames", 1, FRAME_BITS, _flip),
+    "spoof": Kind("share of the frames that another sender's follows", 0, 1, _spoof),
+    "nan": Kind("share of the frames of which a number is not one", 0, 1, _nan),
+    "clock": Kind("by which the firmware's clock jumps once, s", -LONGEST_S, LONGEST_S, None),
+    "stall": Kind("how long the firmware's process stands still, s", 0, LONGEST_S, None),
+}
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault at one strength. messages: which frames; empty: one message of its kind, or all."""
+
+    kind: str
+    strength: float
+    messages: tuple[str, ...]
+    from_s: tuple[float, float]  # it begins somewhere between
+    for_s: float
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """Of each run: a walk at a speed somewhere between two, and one of the faults."""
+
+    speed_m_s: tuple[float, float]
+    duration_s: float
+    faults: tuple[Fault, ...]
+
+
+@dataclass(frozen=True)
+class Happening:
+    """A fault as it is drawn for one walk."""
+
+    kind: str
+    strength: float
+    messages: tuple[str, ...]
+    begin_s: float
+    end_s: float
+
+    @property
+    def is_of_frames(self) -> bool:
+        return KINDS[self.kind].disturb is not None
+
+
+def draw(fault: Fault, random: np.random.Generator) -> Happening:
+    """When, and to which messages."""
+    messages, known = fault.messages, KINDS[fault.kind].messages
+    if not messages:
+        one = int(random.integers(2 * len(known)))
+        messages = known[one : one + 1] or known
+    begin_s = float(random.uniform(*fault.from_s))
+    return Happening(fault.kind, fault.strength, messages, begin_s, begin_s + fault.for_s)
+
+
+class Line:
+    """The way of frames to the firmware, and what happens to them there. One seed: the same."""
+
+    def __init__(self, happenings: Sequence[Happening], random: np.random.Generator) -> None:
+        self.onset_s = math.inf  # when something first happened to a frame
+        self._waiting: list[Arrival] = []
+        self._sent = itertools.count()
+        self._disturbances = [
+            (happening, KINDS[happening.kind].disturb(happening.strength, random))
+            for happening in happenings
+            if happening.is_of_frames
+        ]
+
+    def send(self, frame: can.Message, time_s: float) -> None:
+        arrivals = [Arrival(time_s, 0, frame, time_s)]
+        name = wire.message_name(frame.arbitration_id)
+        for happening, disturb in self._disturbances:
+            if happening.begin_s <= time_s < happening.end_s and name in happening.messages:
+                before = arrivals
+                arrivals = [after for arrival in before for after in disturb(arrival)]
+                if [*map(id, before)] != [*map(id, arrivals)]:
+                    self.onset_s = min(self.onset_s, time_s)
+        for arrival in arrivals:
+            heapq.heappush(self._waiting, replace(arrival, order=next(self._sent)))
+
+    def due(self, time_s: float) -> list[Arrival]:
+        """What gets there by then, in the order in which it does."""
+        arrivals = []
+        while self._waiting and self._waiting[0].time_s <= time_s:
+            arrivals.append(heapq.heappop(self._waiting))
+        return arrivals
+
+
+def read_scenario(path: Path) -> Scenario:
+    """Raises UserError naming the file, the table, the key and what would be right."""
+    try:
+        tables = tomllib.loads(path.read_text())
+    except OSError as error:
+        raise UserError(f"{path}: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UserError(f"{path}: not TOML: {error}") from error
+    top = _Table(str(path), tables, {"walk", "fault"})
+    walk = _Table(f"{path}: [walk]", top.get("walk", {}), {"speed_m_s", "duration_s"})
+    faults = top.get("fault", [])
+    if not isinstance(faults, list) or not faults:
+        raise UserError(f"{path}: give at least one [[fault]]")
+    return Scenario(
+        speed_m_s=walk.span("speed_m_s", 0.1, 2.0),
+        duration_s=walk.number("duration_s", 1.0, LONGEST_S),
+        faults=tuple(
+            fault
+            for index, table in enumerate(faults, 1)
+            for fault in _faults(f"{path}: [[fault]] {index}", table)
+        ),
+    )
+
+
+def _faults(where: str, table: Any) -> list[Fault]:
+    """One for each strength."""
+    keys = {"class", "strength", "messages", "from_s", "for_s"}
+    fault = _Table(where, table, keys)
+    name = fault.get("class", None)
+    if name not in KINDS:
+        raise UserError(f"{where}: class = {name!r} must be one of {', '.join(KINDS)}")
+    kind = KINDS[name]
+    messages = fault.get("messages", [])
+    if not isinstance(messages, list) or any(one not in kind.messages for one in messages):
+        raise UserError(f"{where}: messages = {messages!r} must be of {', '.join(kind.messages)}")
+    return [
+        Fault(
+            kind=name,
+            strength=strength,
+            messages=tuple(messages),
+            from_s=fault.span("from_s", 0.0, LONGEST_S),
+            for_s=fault.number("for_s", 0.0, LONGEST_S),
+        )
+        for strength in fault.numbers("strength", kind.low, kind.high)
+    ]
+
+
+class _Table:
+    """A TOML table; `where` names it in errors."""
+
+    def __init__(self, where: str, table: Any, keys: set[str]) -> None:
+        if not isinstance(table, dict):
+            raise UserError(f"{where}: must be a table")
+        for name in table.keys() - keys:
+            raise UserError(f"{where}: {name} is none of {', '.join(sorted(keys))}")
+        self._where, self._table = where, table
+
+    def get(self, name: str, default: Any) -> Any:
+        return self._table.get(name, default)
+
+    def numbers(self, name: str, low: float, high: float) -> list[float]:
+        """One or more."""
+        if name not in self._table:
+            raise UserError(f"{self._where}: no {name}: give it in {low:g} to {high:g}")
+        value = self._table[name]
+        values = value if isinstance(value, list) else [value]
+        good = values and all(
+            isinstance(one, int | float) and not isinstance(one, bool) and low <= one <= high
+            for one in values
+        )
+        if not good:
+            raise UserError(f"{self._where}: {name} = {value!r} must be in {low:g} to {high:g}")
+        return [float(one) for one in values]
+
+    def number(self, name: str, low: float, high: float) -> float:
+        numbers = self.numbers(name, low, high)
+        if len(numbers) != 1:
+            raise UserError(f"{self._where}: {name} = {numbers} must be one number")
+        return numbers[0]
+
+    def span(self, name: str, low: float, high: float) -> tuple[float, float]:
+        """Two numbers, or one for both."""
+        numbers = self.numbers(name, low, high)
+        if len(numbers) > 2 or numbers != sorted(numbers):
+            raise UserError(f"{self._where}: {name} = {numbers} must be one number, or two rising")
+        return numbers[0], numbers[-1]

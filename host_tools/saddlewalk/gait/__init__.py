@@ -1,0 +1,1 @@
+"""Recorded walks: reading them, measuring them, and fitting the model to a person."""

@@ -1,0 +1,205 @@
+"""What a recorded walk measures, step by step: what the gait model is fitted to."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from saddlewalk.errors import UserError
+from saddlewalk.gait.events import (
+    FootEvents,
+    Placement,
+    foot_events,
+    mean_speed,
+    passing,
+    placements,
+    step_pairs,
+)
+from saddlewalk.gait.recording import Recording
+
+# Means of a walking person, from a child of two to the tallest adult.
+HUMAN = {
+    "walking speed": (0.1, 3.0, "m/s"),
+    "step length": (0.1, 1.3, "m"),
+    "step width": (0.02, 0.5, "m"),
+    "vertical amplitude": (0.002, 0.15, "m"),
+    "lateral amplitude": (0.001, 0.15, "m"),
+    "CoM height": (0.35, 1.4, "m"),
+    "half the foot": (0.03, 0.15, "m"),
+}
+LONGEST_STEP_S = 3.0  # heel strikes further apart have one between them that was not seen
+ONE_POINT_M = 0.01
+HEEL_HEIGHT_M = (-0.03, 0.15)  # of a heel marker while the foot lies flat
+
+
+@dataclass(frozen=True)
+class WalkMeasures:
+    """One recording. Arrays have one value a step and are empty where it does not tell."""
+
+    source: str
+    speed_m_s: float
+    foot: np.ndarray  # that made the step: 0 left, 1 right
+    length_m: np.ndarray  # between placements
+    width_m: np.ndarray  # between placements, left minus right
+    vertical_m: np.ndarray  # peak to peak from heel strike to heel strike
+    lateral_m: np.ndarray  # of the sway, as far as it is largest beside the stance foot
+    com_top_m: np.ndarray  # greatest height
+    half_foot_m: np.ndarray  # one a placement: heel to middle of the metatarsus, halved
+    missing: dict[str, str]  # quantity -> why the recording does not tell it
+
+
+def measure(recording: Recording) -> WalkMeasures:
+    """Raises UserError for what is no walk or, by name, for a mean that no human has."""
+    events = (foot_events(recording, 0), foot_events(recording, 1))
+    placed = placements(recording)
+    pairs = step_pairs(placed)
+    runs = _strikes_in_turn(recording, events)
+    spans = [run[i : i + 2] for run in runs for i in range(len(run) - 1)]
+    heights_m = [recording.com_m[first : end + 1, 2] for first, end in spans]
+    high_m = [z_m for z_m in heights_m if np.isfinite(z_m).all()]
+    sways_m, no_sway = _sways(recording, placed)
+    grounded = _heels_on_ground(recording, placed)
+    measures = WalkMeasures(
+        source=recording.source,
+        speed_m_s=mean_speed(recording, events),
+        foot=np.array([to.side for _, to in pairs], dtype=int),
+        length_m=np.array([to.cop_m[0] - stance.cop_m[0] for stance, to in pairs]),
+        width_m=np.array([_width_m(stance, to) for stance, to in pairs]),
+        vertical_m=np.array([np.ptp(z_m) for z_m in high_m]),
+        lateral_m=sways_m,
+        com_top_m=np.array([z_m.max() for z_m in high_m] if grounded else []),
+        half_foot_m=_half_foot_m(recording, placed),
+        missing=_missing(recording, bool(pairs), bool(high_m), grounded) | no_sway,
+    )
+    _refuse_inhuman(measures)
+    return measures
+
+
+def refuse(source: str, quantity: str, value: float) -> None:
+    """Raise UserError unless the value is one of a human walk."""
+    told = inhuman(quantity, value)
+    if told:
+        raise UserError(f"{source}: {told}")
+
+
+def inhuman(quantity: str, value: float) -> str:
+    """What to say of a value that no human walk has; empty for one that it may have."""
+    low, high, unit = HUMAN[quantity]
+    if low <= value <= high:
+        return ""
+    return f"{quantity} {value:.4g} {unit} is not human: {low:g} to {high:g} {unit}"
+
+
+def _refuse_inhuman(measures: WalkMeasures) -> None:
+    if np.isnan(measures.speed_m_s):
+        raise UserError(f"{measures.source}: no walk: fewer than two heel strikes along +x")
+    refuse(measures.source, "walking speed", measures.speed_m_s)
+    for quantity, values in (
+        ("step length", measures.length_m),
+        ("step width", measures.width_m),
+        ("vertical amplitude", measures.vertical_m),
+        ("lateral amplitude", measures.lateral_m),
+        ("CoM height", measures.com_top_m),
+        ("half the foot", measures.half_foot_m),
+    ):
+        if len(values):
+            refuse(measures.source, quantity, float(np.mean(values)))
+
+
+def _missing(recording: Recording, placed: bool, high: bool, grounded: bool) -> dict[str, str]:
+    """Quantity -> reason, but for the sway."""
+    step = "no step from heel strike to heel strike with the CoM seen all the way"
+    flat = "no two successive feet lay flat"
+    off_ground = "the heels do not stand at z = 0"
+    toes = "not both toes were seen" if not _both_seen(recording.toe_m) else None
+    reasons = {
+        "step length": None if placed else toes or flat,
+        "step width": None if placed else toes or flat,
+        "vertical amplitude": None if high else step,
+        "CoM height": step if not high else None if grounded else toes or off_ground,
+        "half the foot": toes or _one_point(recording),
+    }
+    return {quantity: reason for quantity, reason in reasons.items() if reason is not None}
+
+
+def _both_seen(points_m: np.ndarray) -> bool:
+    return bool(np.isfinite(points_m).any(axis=(1, 2)).all())
+
+
+def _one_point(recording: Recording) -> str | None:
+    apart_m = np.linalg.norm(recording.toe_m - recording.heel_m, axis=2)
+    apart_m = apart_m[np.isfinite(apart_m)]
+    if not len(apart_m):
+        return "heel and toe are never seen together"
+    return "heel and toe are one point" if np.median(apart_m) < ONE_POINT_M else None
+
+
+def _strikes_in_turn(
+    recording: Recording, events: tuple[FootEvents, FootEvents]
+) -> list[list[int]]:
+    """Samples of heel strikes, left and right in turn; a new run where one was not seen."""
+    runs: list[list[int]] = []
+    last = None
+    strikes = [(int(i), side) for side in (0, 1) for i in events[side].heel_strikes]
+    for index, side in sorted(strikes):
+        if last is None or last == side or _longer(recording, runs[-1][-1], index):
+            runs.append([])
+        runs[-1].append(index)
+        last = side
+    return runs
+
+
+def _longer(recording: Recording, first: int, end: int) -> bool:
+    return bool(recording.time_s[end] - recording.time_s[first] > LONGEST_STEP_S)
+
+
+def _width_m(stance: Placement, to: Placement) -> float:
+    return (stance.cop_m[1] - to.cop_m[1]) * (1 if stance.side == 0 else -1)
+
+
+def _sways(recording: Recording, placed: list[Placement]) -> tuple[np.ndarray, dict[str, str]]:
+    """One for each stride from passing a foot to passing it again, or why there is none.
+
+    Least squares in the plan's phase: people sway farthest up to a tenth of a stride before or
+    after they pass the foot, which the plan does not.
+    """
+    sways_m = []
+    for stance, other, again in zip(placed, placed[1:], placed[2:], strict=False):
+        passed, passed_again = passing(recording, stance), passing(recording, again)
+        if stance.side == other.side or stance.side != again.side or not passed or not passed_again:
+            continue
+        (first, start_s), (end, end_s) = passed, passed_again
+        y_m = recording.com_m[first:end, 1]
+        if 0 < end_s - start_s <= 2 * LONGEST_STEP_S and np.isfinite(y_m).all():
+            share = (recording.time_s[first:end] - start_s) / (end_s - start_s)
+            sways_m.append(_cosine_m(share, y_m) * (1 if stance.side == 0 else -1))
+    if not sways_m:
+        why = "no stride from passing a foot to passing it again with the CoM seen all the way"
+    elif np.mean(sways_m) < HUMAN["lateral amplitude"][0]:
+        why = "the CoM is not nearer to the foot that it passes than before and after"
+    else:
+        return np.array(sways_m), {}
+    return np.array([]), {"lateral amplitude": why}
+
+
+def _cosine_m(share: np.ndarray, y_m: np.ndarray) -> float:
+    """Of one period about its mean. What is odd about the middle, as a drift, does not count."""
+    shapes = np.stack([np.cos(2 * np.pi * share), np.ones_like(share)], axis=1)
+    return float(np.linalg.lstsq(shapes, y_m)[0][0])
+
+
+def _heels_on_ground(recording: Recording, placed: list[Placement]) -> bool:
+    heights_m = [recording.heel_m[p.side, p.first : p.end, 2] for p in placed]
+    if not heights_m or not np.isfinite(np.concatenate(heights_m)).any():
+        return False
+    low, high = HEEL_HEIGHT_M
+    return bool(low <= np.nanmedian(np.concatenate(heights_m)) <= high)
+
+
+def _half_foot_m(recording: Recording, placed: list[Placement]) -> np.ndarray:
+    if not _both_seen(recording.toe_m) or _one_point(recording):
+        return np.array([])
+    feet_m = [
+        recording.toe_m[p.side, p.first : p.end, :2] - recording.heel_m[p.side, p.first : p.end, :2]
+        for p in placed
+    ]
+    return np.array([np.median(np.linalg.norm(foot_m, axis=1)) / 2 for foot_m in feet_m])

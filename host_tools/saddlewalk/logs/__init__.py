@@ -1,0 +1,1 @@
+"""Logs of a walk: written, read, tabulated and computed again."""

@@ -1,0 +1,168 @@
+"""A walk on disk: the LCM event log, every CAN frame, and a CSV row a tick.
+
+Each file is written as the walk goes on and closed whatever happens, so that what was recorded
+before a failure stays.
+"""
+
+import csv
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Self
+
+import can
+import lcm
+
+from saddlewalk import verdict
+from saddlewalk.emulation.exoskeleton import Observer, Tick
+from saddlewalk.emulation.wearer import MODES, Wearer
+from saddlewalk.errors import UserError
+from saddlewalk.table import Cell, format_cell
+from saddlewalk.ticks import Signals, scores_of
+from saddlewalk.transport.lcmbus import listen, receive
+
+LCM_CHANNELS = "SADDLEWALK_.*"
+LCM_QUEUE = 2000
+LAST_WORDS_S = 0.2  # for what is still on its way at the end
+CHANNELS = tuple(
+    f"SADDLEWALK_{part}"
+    for part in "CONFIG INPUT PLAN SCORES VERDICT BOS HEALTH STATUS TRUTH".split()
+)
+
+_POINTS = "com_x_m com_y_m com_z_m left_x_m left_y_m left_z_m right_x_m right_y_m right_z_m".split()
+COLUMNS = (
+    "time_s mode step_count phase theta_rad support".split()
+    + [f"plan_{name}" for name in _POINTS]
+    + "plan_speed_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m v_comp_m_s".split()
+    + "gravity_x_n gravity_y_n".split()
+    + verdict.COLUMNS
+    + "paper_stable xcom_deviation_x_m xcom_deviation_y_m".split()
+    + "recovery_foot recovery_x_m recovery_y_m recovery_margin_m recovery_stops".split()
+    + "faults limits".split()
+    + [f"true_{name}" for name in _POINTS]
+    + "true_com_vx_m_s true_com_vy_m_s true_cop_x_m true_cop_y_m left_contact right_contact".split()
+    + "pushed_x_n_s pushed_y_n_s fallen".split()
+)
+
+_SCORES = "S_PEND S_JUMP S_SW MOS_COM MOS_XCOM V_COMP GRAVITY_X GRAVITY_Y".split()
+
+
+class Recorder(Observer):
+    """Writes walk.lcmlog, walk.candump.log and walk.csv into a folder while it is open."""
+
+    def __init__(self, folder: Path, bus: lcm.LCM) -> None:
+        self.lcm_path = folder / "walk.lcmlog"
+        self.can_path = folder / "walk.candump.log"
+        self.csv_path = folder / "walk.csv"
+        self.frames = self.rows = self.lcm_messages = 0
+        self.levels: list[str] = []  # announced, of each tick
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            self._csv_file = self.csv_path.open("w", newline="")
+            self._can_log = can.CanutilsLogWriter(self.can_path, channel="saddlewalk")
+            self._lcm_log = lcm.EventLog(str(self.lcm_path), "w", overwrite=True)
+        except OSError as error:
+            raise UserError(f"--out {folder}: {error.strerror}") from error
+        self._csv = csv.writer(self._csv_file, lineterminator="\n")
+        self._csv.writerow(COLUMNS)
+        self._bus = bus
+        self._subscription = bus.subscribe(LCM_CHANNELS, self._lcm_message)
+        self._subscription.set_queue_capacity(LCM_QUEUE)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        listen(self._bus, LAST_WORDS_S)
+        self._bus.unsubscribe(self._subscription)
+        self._lcm_log.close()
+        self._can_log.stop()
+        self._csv_file.close()
+
+    def frame(self, frame: can.Message) -> None:
+        self._can_log.on_message_received(frame)
+        self.frames += 1
+
+    def tick(self, tick: Tick, wearer: Wearer) -> None:
+        self._csv.writerow(format_cell(cell) for cell in row(tick, wearer))
+        self.rows += 1
+        self.levels.append(verdict.level_name(int(tick.messages["VERDICT"]["LEVEL"])))
+
+    def poll(self) -> None:
+        for _ in range(LCM_QUEUE):
+            if not receive(self._bus):
+                return
+
+    def _lcm_message(self, channel: str, data: bytes) -> None:
+        self._lcm_log.write_event(time.time_ns() // 1000, channel, data)
+        self.lcm_messages += 1
+
+
+def row(tick: Tick, wearer: Wearer) -> list[Cell]:
+    """One line of walk.csv, world frame, in the order of COLUMNS; no plan: empty cells."""
+    scores = scores_of(tick.messages)
+    left, right = wearer.feet
+    return [
+        tick.time_s,
+        *_planned(tick, wearer.origin_m),
+        *(scores[name] for name in _SCORES),
+        *verdict.cells(scores),
+        int(scores["PAPER_STABLE"]),
+        *(scores[name] for name in ("XCOM_DEVIATION_X", "XCOM_DEVIATION_Y")),
+        *_recovery(scores),
+        f"0x{int(scores['FAULTS']):04x}",
+        f"0x{int(tick.messages['HEALTH']['LIMITS']):02x}",
+        *(wearer.com_m.real, wearer.com_m.imag, wearer.height_m),
+        *(left.position_m.real, left.position_m.imag, left.height_m),
+        *(right.position_m.real, right.position_m.imag, right.height_m),
+        *(wearer.velocity_m_s.real, wearer.velocity_m_s.imag),
+        *(wearer.cop_m.real, wearer.cop_m.imag),
+        *(int(left.contact), int(right.contact)),
+        *(wearer.pushed_n_s.real, wearer.pushed_n_s.imag),
+        int(wearer.fallen),
+    ]
+
+
+def _recovery(scores: Signals) -> list[Cell]:
+    """Which foot, where from the stance foot, the reach that is left, whether it ends the walk."""
+    foot = "right" if scores["FOOT"] else "left"
+    return [
+        foot if scores["COMPARED"] else None,
+        *(scores[name] for name in ("X", "Y", "MARGIN")),
+        verdict.known_bit(scores["STOPS"], scores["X"]),
+    ]
+
+
+def _planned(tick: Tick, origin_m: complex) -> list[Cell]:
+    if tick.plan is None:
+        return [None] * (COLUMNS.index("plan_speed_m_s"))
+    step = tick.messages["PLAN_STEP"]
+    points = [tick.messages[name] for name in ("PLAN_COM", "PLAN_LEFT", "PLAN_RIGHT")]
+    return [
+        MODES[tick.plan.mode],
+        int(step["STEP_COUNT"]),
+        int(step["PHASE"]),
+        step["THETA"],
+        "right" if step["SUPPORT"] else "left",
+        *(
+            value
+            for p in points
+            for value in (origin_m.real + p["X"], origin_m.imag + p["Y"], p["Z"])
+        ),
+        tick.plan.speed_m_s,
+    ]
+
+
+def read_can_log(path: Path) -> int:
+    """How many frames a candump log holds."""
+    with can.CanutilsLogReader(path) as log:
+        return sum(1 for _ in log)
+
+
+def read_lcm_log(path: Path) -> Counter[str]:
+    """How many messages an LCM event log holds on each channel."""
+    log = lcm.EventLog(str(path), "r")
+    try:
+        return Counter(event.channel for event in log)
+    finally:
+        log.close()

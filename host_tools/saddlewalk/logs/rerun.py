@@ -1,0 +1,283 @@
+"""Logged runs computed again from their inputs, and each of their outputs compared, bit for bit.
+
+An LCM log holds all that a run was given: SADDLEWALK_CONFIG, and with each tick SADDLEWALK_INPUT.
+So it can be computed again on any machine, whatever its clock was. A CAN log holds the frames that
+came. That is all that a run in lockstep was given, but for its configuration; in real time the
+ages of the measurements, and commands by LCM, were inputs too, of which no frame tells.
+"""
+
+import struct
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from saddlewalk import __version__
+from saddlewalk.config import ANKLES
+from saddlewalk.errors import UserError
+from saddlewalk.firmware import Firmware, default_config, ffi, library
+from saddlewalk.logs.messages import Event, decode
+from saddlewalk.ticks import TICK_S
+
+HEALTH_FIELDS = ("tick", "status", "limits", "faults")  # the core's; the others are the host's
+_PACKED = {"float": ">f", "double": ">d", "int8_t": ">b", "int32_t": ">i", "int64_t": ">q"}
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A tick's first output that is not what the core gives for its inputs."""
+
+    tick: int
+    name: str  # the message and its field
+    recorded: str
+    recomputed: str
+
+    def __str__(self) -> str:
+        return (
+            f"tick {self.tick} ({self.tick * TICK_S:.2f} s), {self.name}: "
+            f"recorded {self.recorded}, recomputed {self.recomputed}"
+        )
+
+
+@dataclass
+class Report:
+    """What was computed again, the first difference, and in words what could not be compared."""
+
+    source: str = ""
+    runs: int = 0
+    ticks: int = 0
+    compared: int = 0  # messages or frames
+    different_ticks: int = 0
+    first: Difference | None = None
+    gaps: list[str] = field(default_factory=list)
+    missing: dict[str, list[int]] = field(default_factory=dict)  # output -> ticks without it
+
+    @property
+    def not_compared(self) -> list[str]:
+        """In words, what of the log could not be compared; empty: nothing."""
+        lost = (
+            f"{name} of {len(ticks)} ticks is not in the log, the first time of tick {ticks[0]}"
+            for name, ticks in self.missing.items()
+        )
+        return [*self.gaps, *lost]
+
+    @property
+    def sound(self) -> bool:
+        """Every recorded output was computed again and is the same."""
+        return self.first is None and not self.not_compared
+
+    def differs(self, difference: Difference) -> None:
+        self.first = self.first or difference
+        self.different_ticks += 1
+
+
+@dataclass
+class LoggedTick:
+    """One tick of an LCM log."""
+
+    number: int  # from 0 in each run
+    inputs: Any  # saddle_input_t
+    config: Any  # the config_t that came with it, or None
+    outputs: dict[str, Any] = field(default_factory=dict)  # channel -> Event
+
+
+def rerun_lcm(events: Iterable[Event]) -> Report:
+    """Compute the runs of an LCM log again. Raises UserError if no tick of it can be."""
+    rerun = _LcmRerun()
+    for tick in logged_ticks(events):
+        rerun.take(tick)
+    rerun.end_run()
+    if not rerun.report.ticks:
+        raise UserError(
+            rerun.report.gaps[0]
+            if rerun.report.gaps
+            else "nothing came on SADDLEWALK_INPUT, from which a run is computed again: it was "
+            "logged without that channel, or by a firmware that did not publish it"
+        )
+    return rerun.report
+
+
+def logged_ticks(events: Iterable[Event]) -> Iterator[LoggedTick]:
+    """Each SADDLEWALK_INPUT with the messages of its tick, which are those of its time."""
+    tick, config = None, None
+    for event in events:
+        if event.channel == "SADDLEWALK_CONFIG":
+            config = event
+        elif event.channel == "SADDLEWALK_INPUT":
+            if tick:
+                yield tick
+            tick, config = _begun(event, config), None
+        elif tick and _utime_us(event) == tick.inputs.time_us:
+            tick.outputs[event.channel] = event
+    if tick:
+        yield tick
+
+
+def _begun(event: Event, config: Event | None) -> LoggedTick:
+    inputs, number = ffi().new("saddle_input_t *"), ffi().new("int32_t *")
+    if not library().saddle_lcm_decode_input(event.data, len(event.data), inputs, number):
+        raise UserError(
+            f"a message of {len(event.data)} bytes on SADDLEWALK_INPUT is not an input_t as "
+            f"saddlewalk {__version__} has it"
+        )
+    with_it = config is not None and _utime_us(config) == inputs.time_us
+    return LoggedTick(number[0], inputs, decode(config) if with_it else None)
+
+
+def _utime_us(event: Event) -> int:
+    """Of any message of ours: the first member, after LCM's fingerprint of the type."""
+    return int.from_bytes(event.data[8:16], "big", signed=True)
+
+
+class _LcmRerun:
+    """Takes the ticks of a log, one run after another."""
+
+    def __init__(self) -> None:
+        self.report = Report()
+        self._firmware: Firmware | None = None  # None: the state of the core is not known
+        self._config: Any = None  # config_t of the run
+        self._why = ""  # it is not known
+        self._first_unknown = 0
+        self._last: int | None = None
+
+    def take(self, tick: LoggedTick) -> None:
+        if tick.number == 0:
+            self._begin_run(tick)
+        elif self._last is None:
+            self._lose(tick.number, "the log begins in mid-run, without the state of the core")
+        elif tick.number != self._last + 1:
+            self._lose(tick.number, f"tick {self._last} is followed by tick {tick.number}")
+        self._last = tick.number
+        if self._firmware:
+            self._compute(self._firmware, tick)
+
+    def end_run(self) -> None:
+        """Tell what of the run could not be computed."""
+        if self._why:
+            self.report.gaps.append(
+                f"{self._why}: ticks {self._first_unknown} to {self._last} cannot be computed"
+            )
+        self._why, self._firmware, self._last = "", None, None
+
+    def _begin_run(self, tick: LoggedTick) -> None:
+        self.end_run()
+        if tick.config is None:
+            self._lose(0, "no config_t came with tick 0")
+            return
+        self._config = tick.config
+        self._firmware = Firmware(_core_config(tick.config))
+        self.report.source = _source(tick.config)
+        self.report.runs += 1
+
+    def _lose(self, number: int, why: str) -> None:
+        if not self._why:
+            self._why, self._first_unknown = why, number
+        self._firmware = None
+
+    def _compute(self, firmware: Firmware, tick: LoggedTick) -> None:
+        if tick.config and _fields(tick.config) != _fields(self._config):
+            self.report.gaps.append(f"the configuration with tick {tick.number} is another")
+        output = firmware.tick(tick.inputs)
+        self.report.ticks += 1
+        differences = [
+            self._compare(tick, channel, data)
+            for channel, data in firmware.messages(tick.inputs.time_us).items()
+        ]
+        health = (tick.number, output.status, output.limits, output.faults)
+        differences.append(self._compare_health(tick, health))
+        first = next(filter(None, differences), None)
+        if first:
+            self.report.differs(first)
+
+    def _recorded(self, tick: LoggedTick, channel: str) -> Event | None:
+        event = tick.outputs.get(channel)
+        if event is None:
+            self.report.missing.setdefault(channel, []).append(tick.number)
+        else:
+            self.report.compared += 1
+        return event
+
+    def _compare(self, tick: LoggedTick, channel: str, recomputed: bytes) -> Difference | None:
+        event = self._recorded(tick, channel)
+        if event is None or event.data == recomputed:
+            return None
+        return _difference(tick.number, event, recomputed)
+
+    def _compare_health(self, tick: LoggedTick, recomputed: tuple[int, ...]) -> Difference | None:
+        event = self._recorded(tick, "SADDLEWALK_HEALTH")
+        if event is None:
+            return None
+        health = decode(event)
+        if health is None:
+            return _unreadable(tick.number, event)
+        for name, value in zip(HEALTH_FIELDS, recomputed, strict=True):
+            if getattr(health, name) != value:
+                said = (str(getattr(health, name)), str(value))
+                return Difference(tick.number, f"{event.channel} {name}", *said)
+        return None
+
+
+def _source(config: Any) -> str:
+    clock = "lockstep" if config.lockstep else "real time"
+    text = f"saddlewalk {config.library_version}, wire {config.wire_version}, {clock}"
+    return text if config.library_version == __version__ else f"{text}; this is {__version__}"
+
+
+def _fields(config: Any) -> list[tuple[str, float]]:
+    return [("ankle", config.ankle), *zip(config.name, config.value, strict=True)]
+
+
+def _core_config(message: Any) -> Any:
+    """A config_t as saddle_config_t. Raises UserError unless it has the very fields of this one."""
+    config = default_config()
+    told = dict(_fields(message))
+    known = {name for name, _ in ffi().typeof(config).item.fields}
+    for names, fault in ((told.keys() - known, "is not"), (known - told.keys(), "is")):
+        if names:
+            raise UserError(
+                f"its configuration is of saddlewalk {message.library_version}, and {min(names)} "
+                f"{fault} a field of {__version__}'s: give a log of the same version"
+            )
+    if told["ankle"] not in ANKLES.values():
+        raise UserError(f"its configuration has ankle {told['ankle']}: give a log that is whole")
+    for name, value in told.items():
+        setattr(config, name, value)
+    return config
+
+
+def _difference(tick: int, event: Event, recomputed: bytes) -> Difference:
+    """Names the first field that differs."""
+    recorded = decode(event)
+    if recorded is None:
+        return _unreadable(tick, event)
+    ours = _flat(type(recorded).decode(recomputed))
+    for name, (kind, value) in _flat(recorded).items():
+        if _bits(kind, value) != _bits(*ours[name]):
+            told = _text(kind, value), _text(*ours[name])
+            return Difference(tick, f"{event.channel} {name}", *told)
+    return Difference(tick, event.channel, event.data.hex(), recomputed.hex())
+
+
+def _unreadable(tick: int, event: Event) -> Difference:
+    return Difference(tick, event.channel, f"{len(event.data)} bytes of no such type", "a message")
+
+
+def _flat(message: Any) -> dict[str, tuple[str, Any]]:
+    """Fields of an LCM message, element by element: name -> (LCM type, value)."""
+    flat = {}
+    for name, kind in zip(message.__slots__, message.__typenames__, strict=True):
+        value = getattr(message, name)
+        if isinstance(value, list | tuple):
+            flat |= {f"{name}[{i}]": (kind, element) for i, element in enumerate(value)}
+        else:
+            flat[name] = (kind, value)
+    return flat
+
+
+def _bits(kind: str, value: float) -> bytes:
+    return struct.pack(_PACKED[kind], value)
+
+
+def _text(kind: str, value: float) -> str:
+    if isinstance(value, int):
+        return str(value)
+    return f"{value:.{9 if kind == 'float' else 17}g} (0x{_bits(kind, value).hex()})"

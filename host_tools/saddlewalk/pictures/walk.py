@@ -1,0 +1,218 @@
+"""The picture of a recorded walk: from above, whole and closely; speed, height, scores, level."""
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse, Polygon
+
+from saddlewalk.core import bos_polygon
+from saddlewalk.emulation.wearer import MODES, STANDING, STARTING, STOPPING, Push
+from saddlewalk.verdict import LEVELS
+
+matplotlib.use("Agg")
+
+# Okabe and Ito's colours, which the colour-blind can tell apart; line styles differ as well.
+BLUE, SKY, GREEN, ORANGE, RED, PINK = "#0072B2 #56B4E9 #009E73 #E69F00 #D55E00 #CC79A7".split()
+BEFORE_S, AFTER_S = 1.2, 3.0  # the part of the walk shown closely, about the first push
+FOOT_M = (0.26, 0.09)
+MARGIN_SHOWN_M = -0.8  # after a fall it is far below
+FEET = (("left", GREEN), ("right", RED))
+MARGINS = (
+    ("mos_com_m", "CoM"),
+    ("mos_xcom_m", "XCoM"),
+    ("ebos_xcom_m", "XCoM at the next\nheel strike"),
+)
+# From the lowest lane up; alarms have a pattern as well.
+LANES = {
+    "unknown": {"color": "0.6"},
+    "stable": {"color": GREEN},
+    "caution": {"facecolor": ORANGE, "hatch": "///"},
+    "unstable": {"facecolor": RED, "hatch": "xxx"},
+}
+SHADES = {STANDING: "0.85", STARTING: "#DDEEDD", STOPPING: "#F6E3D5"}
+
+Columns = dict[str, np.ndarray]
+
+
+def read_walk(path: Path) -> Columns:
+    """The numbers of walk.csv by column: NaN where a cell is empty, names by their number."""
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    codes = {"left": "0", "right": "1"} | {
+        name: str(number) for names in (MODES, LEVELS) for number, name in enumerate(names)
+    }
+    return {
+        name: np.array([float(codes.get(row[name], row[name]) or "nan") for row in rows])
+        for name in rows[0]
+        if name not in ("reason", "faults", "limits")
+    }
+
+
+def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push], config: Any) -> None:
+    """Draw walk.csv, whole or as far as it goes. config: saddle_config_t of the walker."""
+    walk = read_walk(csv_path)
+    figure = Figure(figsize=(13, 14), dpi=110, layout="constrained")
+    whole, above, speed, height, scores, level, margins = figure.subplots(
+        7, 1, height_ratios=(0.6, 1.7, 0.8, 0.8, 0.9, 0.6, 0.9)
+    )
+    shown = _shown(walk["time_s"], pushes)
+    closely = {name: column[shown] for name, column in walk.items()}
+    figure.suptitle("A walk: the plan, and the wearer who follows it")
+    _draw_whole(whole, walk, closely)
+    _draw_above(above, closely, pushes, config)
+    _draw_lines(
+        speed, walk, (("true_com_vx_m_s", "true"), ("plan_speed_m_s", "planned")), modes=True
+    )
+    speed.set(ylabel="speed (m/s)")
+    _draw_height(height, closely)
+    _draw_lines(scores, walk, (("s_pend", "S_pend"), ("s_jump", "S_jump"), ("s_sw", "S_SW")))
+    scores.set(ylabel="stability score\n(1 reference, 0 limit)", ylim=(-0.5, 1.6))
+    _draw_lines(margins, walk, MARGINS)
+    margins.set(ylabel="margin in the base\nof support (m)", xlabel="time (s)")
+    margins.set_ylim(bottom=max(margins.get_ylim()[0], MARGIN_SHOWN_M))
+    for axes in (speed, height, scores, margins):
+        _mark(axes, pushes)
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    _draw_level(level, walk)
+    _mark(level, pushes)
+    figure.savefig(png_path)
+
+
+def _footprint(colour: str) -> dict[str, Any]:
+    return {"color": colour, "alpha": 0.55, "lw": 0}
+
+
+def _draw_whole(axes: Axes, walk: Columns, closely: Columns) -> None:
+    """The whole walk from above, and which part of it is shown closely."""
+    for side, colour in FEET:
+        _draw_stood(axes, walk, "true", side, walk[f"{side}_contact"] > 0, _footprint(colour))
+    axes.plot(walk["true_com_x_m"], walk["true_com_y_m"], color=BLUE, lw=1.2)
+    axes.axvspan(*closely["true_com_x_m"][[0, -1]], color="0.92", zorder=0)
+    axes.set_aspect("equal")
+    axes.set(ylabel="to the left (m)")
+    axes.set_xlim(walk["true_com_x_m"].min() - 0.3, walk["true_com_x_m"].max() + 0.3)
+    axes.set_ylim(*_lateral_limits(walk))
+
+
+def _shown(time_s: np.ndarray, pushes: Sequence[Push]) -> np.ndarray:
+    centre_s = pushes[0].time_s if pushes else (time_s[-1] + BEFORE_S - AFTER_S) / 2
+    shown = (time_s >= centre_s - BEFORE_S) & (time_s <= centre_s + AFTER_S)
+    return shown if shown.any() else np.ones_like(shown)
+
+
+def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], config: Any) -> None:
+    for index in range(len(walk["time_s"])):
+        bos_m = _bos(walk, index, config)
+        axes.add_patch(Polygon(bos_m, color=SKY, alpha=0.10, lw=0))
+        axes.add_patch(Polygon(bos_m, fill=False, ec=SKY, alpha=0.35, lw=0.5))
+    for index, (side, colour) in enumerate(FEET):
+        planned = walk["support"] == index
+        _draw_feet(axes, walk, planned, side, colour)
+    axes.plot([], [], color=SKY, lw=8, alpha=0.4, label="base of support")
+    axes.plot(walk["plan_com_x_m"], walk["plan_com_y_m"], "k--", lw=1.2, label="CoM, planned")
+    axes.plot(walk["true_com_x_m"], walk["true_com_y_m"], color=BLUE, lw=2.2, label="CoM")
+    for push in pushes:
+        _draw_push(axes, walk, push)
+    axes.set_aspect("equal")
+    axes.set(xlabel="forward (m)", ylabel="to the left (m)")
+    axes.set_xlim(walk["true_com_x_m"].min() - 0.2, walk["true_com_x_m"].max() + 0.2)
+    axes.set_ylim(*_lateral_limits(walk))
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False)
+
+
+def _bos(walk: Columns, index: int, config: Any) -> np.ndarray:
+    """Base of support of the true feet, from the C core."""
+    cops_m = [
+        (walk[f"true_{side}_x_m"][index], walk[f"true_{side}_y_m"][index]) for side, _ in FEET
+    ]
+    return np.array(bos_polygon(config, cops_m))
+
+
+def _draw_feet(axes: Axes, walk: Columns, planned: np.ndarray, side: str, colour: str) -> None:
+    """Footprints where the foot stood, full, and where it was planned to stand, outlined."""
+    outline = {"fill": False, "ec": "black", "ls": "--", "lw": 0.8}
+    _draw_stood(axes, walk, "true", side, walk[f"{side}_contact"] > 0, _footprint(colour))
+    _draw_stood(axes, walk, "plan", side, planned, outline)
+    axes.plot([], [], "o", color=colour, alpha=0.55, ms=9, label=f"{side} foot")
+
+
+def _draw_stood(
+    axes: Axes, walk: Columns, whose: str, side: str, there: np.ndarray, style: dict[str, Any]
+) -> None:
+    places = np.column_stack([walk[f"{whose}_{side}_x_m"], walk[f"{whose}_{side}_y_m"]])
+    for place in np.unique(places[there].round(3), axis=0):
+        axes.add_patch(Ellipse(place, *FOOT_M, **style))
+
+
+def _lateral_limits(walk: Columns) -> tuple[float, float]:
+    lateral = np.concatenate([walk[f"true_{side}_y_m"] for side, _ in FEET])
+    return min(lateral.min() - 0.15, -0.5), max(lateral.max() + 0.15, 0.5)
+
+
+def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
+    index = int(np.argmin(np.abs(walk["time_s"] - push.time_s)))
+    at = complex(walk["true_com_x_m"][index], walk["true_com_y_m"][index])
+    tail = at - 0.4 * push.vector_n_s / abs(push.vector_n_s)
+    axes.annotate(
+        f"push\n{push.impulse_n_s:.3g} N·s",
+        xy=(at.real, at.imag),
+        xytext=(tail.real, tail.imag),
+        arrowprops={"arrowstyle": "-|>", "color": PINK, "lw": 3},
+        color=PINK,
+        ha="center",
+        va="center",
+        weight="bold",
+    )
+
+
+def _draw_height(axes: Axes, walk: Columns) -> None:
+    axes.plot(walk["time_s"], walk["plan_com_z_m"], "k--o", ms=3, lw=1.0, label="planned")
+    axes.plot(walk["time_s"], walk["true_com_z_m"], "-o", color=BLUE, ms=3, lw=1.6, label="true")
+    axes.set(ylabel="height of\nthe CoM (m)")
+    axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
+
+
+def _draw_lines(
+    axes: Axes, walk: Columns, names: Sequence[tuple[str, str]], modes: bool = False
+) -> None:
+    """Lines over the whole walk; modes: name the shades, which tell what the plan is doing."""
+    styles = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."))
+    for (name, label), (colour, style) in zip(names, styles, strict=False):
+        axes.plot(walk["time_s"], walk[name], color=colour, ls=style, lw=1.6, label=label)
+    axes.axhline(0, color="0.4", lw=0.8)
+    axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
+    for mode, shade in SHADES.items():
+        for start_s, end_s in _spans(walk["time_s"], walk["mode"] == mode):
+            axes.axvspan(start_s, end_s, color=shade, lw=0, zorder=0)
+        if modes:
+            axes.fill_between([], [], color=shade, label=MODES[mode])
+
+
+def _draw_level(axes: Axes, walk: Columns) -> None:
+    """A lane for each level, filled while it was announced."""
+    for lane, (name, style) in enumerate(LANES.items()):
+        there = walk["level"] == LEVELS.index(name)
+        spans = [(start_s, end_s - start_s) for start_s, end_s in _spans(walk["time_s"], there)]
+        axes.broken_barh(spans, (lane - 0.4, 0.8), lw=0, **style)
+    axes.set(ylabel="level", ylim=(-0.5, len(LANES) - 0.5))
+    axes.set_yticks(range(len(LANES)), LANES)
+    axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
+
+
+def _spans(time_s: np.ndarray, there: np.ndarray) -> list[tuple[float, float]]:
+    """Begin and end of each run of True; a run ends where the next sample is."""
+    edges = np.flatnonzero(np.diff(there, prepend=False, append=False))
+    last = len(time_s) - 1
+    return [(time_s[a], time_s[min(b, last)]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _mark(axes: Axes, pushes: Sequence[Push]) -> None:
+    for push in pushes:
+        axes.axvline(push.time_s, color=PINK, lw=2.5, zorder=1)
+    axes.grid(alpha=0.25)
