@@ -14,10 +14,17 @@
 
 saddle_measurement_t saddle_no_measurement(void)
 {
-    return (saddle_measurement_t){
-        .com = {.age_us = SADDLE_AGE_NEVER_US},
-        .foot = {{.age_us = SADDLE_AGE_NEVER_US}, {.age_us = SADDLE_AGE_NEVER_US}},
-    };
+    const saddle_vec2_t zero = {0.0f, 0.0f};
+    saddle_measurement_t none;
+    none.com.height_m = 0.0f;
+    none.com.velocity_m_s = zero;
+    none.com.age_us = SADDLE_AGE_NEVER_US;
+    for (int side = 0; side < 2; side++) {
+        none.foot[side].cop_m = zero;
+        none.foot[side].contact = false;
+        none.foot[side].age_us = SADDLE_AGE_NEVER_US;
+    }
+    return none;
 }
 
 static bool vec2_within(saddle_vec2_t v, float max)

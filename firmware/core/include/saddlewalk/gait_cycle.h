@@ -19,6 +19,7 @@ typedef struct {
     saddle_fixed_t quarter_length;
     saddle_quarter_t quarter;
     uint8_t phase;                /**< 0 to 3; even: towards the saddle via point */
+    bool last_swing;              /**< the running step ends beside the stance foot: a stop */
     uint32_t step_count;          /**< changes of the stance foot */
     uint32_t stride_count;        /**< times that phase 0 was entered again */
     int64_t origin_x_nm;          /**< way to the stance foot */
@@ -31,7 +32,6 @@ typedef struct {
     float next_heel_strike_rad;   /**< of the next one */
     saddle_transition_t transition; /**< of the nearest saddle via point, erf and rigid only */
     saddle_vec2_t last_step_m;    /**< from the old stance foot to the new one */
-    bool last_swing;              /**< the running step ends beside the stance foot: a stop */
 } saddle_cycle_t;
 
 /** What a cycle says at one instant, from the stance CoP; y from there too. */

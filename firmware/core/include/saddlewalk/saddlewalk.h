@@ -60,6 +60,7 @@ typedef struct {
 
 /** Caller-owned state; treat the fields as private. */
 typedef struct {
+    uint64_t last_time_us;
     uint32_t initialised;
     saddle_config_t config;
     saddle_body_t body;
@@ -68,7 +69,6 @@ typedef struct {
     saddle_safe_state_t safe_state;
     saddle_command_t command; /**< the last usable one */
     uint32_t command_age_us;
-    uint64_t last_time_us;
     bool ticked;
 } saddle_context_t;
 
