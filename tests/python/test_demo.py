@@ -8,6 +8,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -200,6 +201,22 @@ def test_demo_makes_its_own_network_where_lcm_has_no_route(tmp_path):
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert "private network" in done.stdout
+
+
+def test_firmware_that_starts_slowly_is_sent_each_measurement_once(ports):
+    from saddlewalk.emulation.exoskeleton import Exoskeleton
+    from saddlewalk.emulation.host import running_host
+    from saddlewalk.emulation.wearer import Wearer
+    from saddlewalk.planning.schedule import schedule_of
+
+    options = (f"--can={ports[1]}", "--lcm=none", "--clock=lockstep")
+    with running_host(*options) as host, open_bus(ports[1]) as bus:
+        host.send_signal(signal.SIGSTOP)
+        threading.Timer(0.8, host.send_signal, [signal.SIGCONT]).start()
+        exoskeleton = Exoskeleton(bus, Wearer(), schedule_of([(0.0, 0.0)], 0.0))
+        exoskeleton.run("lockstep", 0.8)
+    assert exoskeleton.ticks == 10
+    assert exoskeleton.frames_sent == 10 * 4 + 1  # command and measurements; the last command
 
 
 def test_emulate_without_firmware_says_so(ports, capsys, monkeypatch):

@@ -113,7 +113,9 @@ def run(args: argparse.Namespace) -> int:
         events = events_printer(wearer)
         ways = faulty(bus, lcm, happenings, args.seed) if happenings else (bus, lcm)
         start = "start saddlewalk-host there with the same --clock and --lcm"
-        exoskeleton = Exoskeleton(ways[0], wearer, schedule, ways[1], [events], start)
+        exoskeleton = Exoskeleton(
+            ways[0], wearer, schedule, ways[1], [events], fresh=False, if_silent=start
+        )
         exoskeleton.run(args.clock, args.duration)
     print(summary(wearer, exoskeleton))
     return 1 if wearer.fallen else 0

@@ -93,6 +93,7 @@ class Exoskeleton:
     """Sends the wearer's measurements, follows the plan that comes back, publishes the truth.
 
     A walk in progress is ended first: the own one begins when the firmware plans to stand.
+    fresh: the firmware has been started for this walk and has heard nobody yet.
     if_silent: what the user can do when no firmware answers.
     """
 
@@ -103,6 +104,7 @@ class Exoskeleton:
         schedule: Schedule,
         lcm: Any = None,
         observers: Iterable[Observer] = (),
+        fresh: bool = True,
         if_silent: str = "",
     ) -> None:
         self.reader = TickReader()
@@ -112,7 +114,7 @@ class Exoskeleton:
         self.mode: int | None = None  # of the newest plan; None without one
         self._bus, self._lcm, self._wearer, self._schedule = bus, lcm, wearer, schedule
         self._observers = tuple(observers)
-        self._if_silent = if_silent
+        self._fresh, self._if_silent = fresh, if_silent
         self._sender = Sender()
         self._begun = False
         self._unheeded = 0  # ticks in a row
@@ -163,10 +165,10 @@ class Exoskeleton:
         """Send what is measured and wait for the firmware's tick.
 
         Firmware that heard another wearer before refuses the first set, whose counters are new; so
-        until it has answered once, the set is sent again.
+        until it has answered once, the set is sent again. Fresh firmware would tick for each.
         """
         deadline_s = time.monotonic() + SILENCE_S
-        patience_s = SILENCE_S if self.ticks else RESEND_S
+        patience_s = SILENCE_S if self.ticks or self._fresh else RESEND_S
         while time.monotonic() < deadline_s:
             self._send_command_frame()
             self._send_measurement()
