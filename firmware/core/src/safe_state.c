@@ -32,7 +32,7 @@ bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_config_t 
 
 void saddle_safe_state_gap(saddle_safe_state_t *state, const saddle_config_t *config, float gap_s)
 {
-    if (state->armed && gap_s > config->com_max_age_s) {
+    if (state->armed && gap_s > config->step_time_max_s) {
         state->stopped = true;
         state->good_s = 0.0f;
     }

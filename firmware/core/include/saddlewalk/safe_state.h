@@ -21,7 +21,8 @@ typedef struct {
 bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_config_t *config,
                               uint32_t faults, float dt_s);
 
-/** No tick for gap_s: longer than com_max_age_s is a loss. Call it before that tick's update. */
+/** No tick for gap_s: a walk does not go on over one longer than step_time_max_s, after which nobody is
+ *  known to walk. Call it before that tick's update. */
 void saddle_safe_state_gap(saddle_safe_state_t *state, const saddle_config_t *config, float gap_s);
 
 #endif
