@@ -15,7 +15,7 @@ from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.lcmbus import open_lcm
 from saddlewalk.transport.wire import Receiver, Sender
 
-WAIT_S = 2.0  # for what must come
+WAIT_S = 5.0  # for what must come
 SILENCE_S = 0.1  # for what must not
 TICK_S = 0.08
 MESSAGES_PER_TICK = 21

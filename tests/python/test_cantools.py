@@ -15,7 +15,7 @@ from pathlib import Path
 from host_node import MESSAGES_PER_TICK, Host
 from saddlewalk import paths
 
-START_S = 30.0  # for a program in Python, on an emulated processor too
+START_S = 90.0  # for a program in Python, on an emulated processor with cold caches too
 DATABASE = str(paths.CHECKOUT / "firmware/wire/saddlewalk.dbc")
 
 

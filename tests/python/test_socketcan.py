@@ -30,7 +30,7 @@ from saddlewalk.transport.bus import open_bus
 pytestmark = pytest.mark.socketcan
 
 CLASSIC, FD = "socketcan:vcan0", "socketcan:vcan1"
-START_S = 20.0  # for a program in Python to start in the guest
+START_S = 90.0  # for a program in Python to start in the guest
 DATABASE = paths.CHECKOUT / "firmware/wire/saddlewalk.dbc"
 
 
