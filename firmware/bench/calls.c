@@ -3,6 +3,7 @@
 #include "floor.h"
 #include "walks.h"
 
+#include <saddlewalk/saddle_math.h>
 #include <stdio.h>
 
 static bool telling;
@@ -35,6 +36,14 @@ TOLD(saddle_asin, SADDLE_BENCH_ASIN)
 TOLD(saddle_erf, SADDLE_BENCH_ERF)
 TOLD(saddle_exp, SADDLE_BENCH_EXP)
 TOLD(sqrtf, SADDLE_BENCH_SQRT)
+
+saddle_sin_cos_t __real_saddle_sin_cos(float x_rad);
+saddle_sin_cos_t __wrap_saddle_sin_cos(float x_rad);
+saddle_sin_cos_t __wrap_saddle_sin_cos(float x_rad)
+{
+    tell(SADDLE_BENCH_SIN_COS, x_rad);
+    return __real_saddle_sin_cos(x_rad);
+}
 
 int main(void)
 {

@@ -8,6 +8,7 @@
 enum {
     SADDLE_BENCH_SIN,
     SADDLE_BENCH_COS,
+    SADDLE_BENCH_SIN_COS,
     SADDLE_BENCH_ASIN,
     SADDLE_BENCH_ERF,
     SADDLE_BENCH_EXP,
@@ -17,7 +18,7 @@ enum {
 
 /** How often an update calls each function. */
 typedef struct {
-    uint32_t count[6];
+    uint32_t count[7];
 } saddle_bench_calls_t;
 
 /** The calls once more; arguments: those of each function, one function after the other. Returns the

@@ -32,7 +32,7 @@ STEP_M = 2 * (0.1802 * SPEED_M_S + 0.1351)
 STEP_TIME_S = STEP_M / SPEED_M_S
 WIDTH_M = step_width(SPEED_M_S)
 PENDULUM_M = 0.57 * BODY.height_m
-FUNCTIONS = ("sin", "cos", "asin", "erf", "exp", "sqrt")  # in the order of floor.h
+FUNCTIONS = ("sin", "cos", "sin_cos", "asin", "erf", "exp", "sqrt")  # in the order of floor.h
 
 CORE, FLOOR = "core", "floor of the core"
 NUMPY, NUMPY_AT_ONCE = "numpy, instant by instant", "numpy, all instants at once"
