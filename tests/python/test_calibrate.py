@@ -112,6 +112,12 @@ def refusal(capsys, *arguments: str) -> str:
     return printed.err
 
 
+def test_a_recording_that_is_given_twice_is_refused(write, capsys, tmp_path):
+    walk = write(walk_of(PERSON, 1.0))
+    told = refusal(capsys, "calibrate", walk, walk, "--out", str(tmp_path / "person.toml"))
+    assert walk in told and "twice" in told
+
+
 def test_a_plan_s_own_walks_give_back_its_configuration(write, tmp_path):
     walks = [write(walk_of(PERSON, v), f"{v}.csv") for v in SPEEDS_M_S]
     found = calibrated(tmp_path, *walks, "--mass", "55")

@@ -266,3 +266,13 @@ def test_binary_file_is_refused_in_one_line(content, capsys, tmp_path):
 def test_missing_file_is_named(capsys, tmp_path):
     assert main(["supervise", "--in", str(tmp_path / "none.csv")]) == 2
     assert "none.csv" in capsys.readouterr().err
+
+
+def test_speed_beyond_the_ceiling_is_told(capsys, tmp_path):
+    source = tmp_path / "states.csv"
+    source.write_text(",".join(STATE_COLUMNS) + "\n0" + "," * (len(STATE_COLUMNS) - 1) + "\n")
+    assert main(["supervise", "--in", str(source), "--speed", "9"]) == 0
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1 and "--speed 9" in told and "1.935 m/s" in told
+    assert main(["supervise", "--in", str(source), "--speed", "1.2"]) == 0
+    assert capsys.readouterr().err == ""

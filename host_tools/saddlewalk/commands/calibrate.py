@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from saddlewalk.errors import UserError
 from saddlewalk.options import add_recordings, number_in
 
 if TYPE_CHECKING:
@@ -53,6 +54,9 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.table import write_text
 
     markers = read_markers(Path(args.markers)) if args.markers else {}
+    for source in args.recordings:
+        if args.recordings.count(source) > 1:
+            raise UserError(f"{source} is given twice: its steps would count twice")
     walks = [measure(load_walk(source, markers)) for source in args.recordings]
     fits = calibrate(walks, args.height, args.mass)
     config = checked(fits)

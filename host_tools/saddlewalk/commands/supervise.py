@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -46,7 +47,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk.core import Command, Core
+    from saddlewalk.core import Command, Core, library
 
     config = load_config(args)
     config.lost_inputs_stop = 0.0  # a recording goes on whatever it lacks
@@ -54,6 +55,10 @@ def run(args: argparse.Namespace) -> int:
     command = Command(args.speed)
     if args.speed is not None:
         core.join(command)
+        ceiling_m_s = library().saddle_body(config).speed_ceiling_m_s
+        if args.speed >= ceiling_m_s:
+            note = f"is not feasible for this body: limited below {ceiling_m_s:.4g} m/s"
+            print(f"saddlewalk supervise: --speed {args.speed:g} {note}", file=sys.stderr)
     write_table(args.out, SCORE_COLUMNS, _scores(core, command, args.source))
     return 0
 
