@@ -3,12 +3,12 @@
 import argparse
 import difflib
 import math
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from saddlewalk.errors import UserError
+from saddlewalk.toml_file import read_toml
 
 DEFAULT_HEIGHT_M = 1.79
 DEFAULT_MASS_KG = 63.3
@@ -74,12 +74,7 @@ def _origin(field: str, args: argparse.Namespace) -> str:
 
 
 def _read_file(path: Path) -> dict[str, float | int]:
-    try:
-        fields = tomllib.loads(path.read_text())
-    except OSError as error:
-        raise UserError(f"--config {path}: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UserError(f"{path}: not TOML: {error}") from error
+    fields = read_toml(path, "--config")
     return {name: _field_value(path, name, value) for name, value in fields.items()}
 
 

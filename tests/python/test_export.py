@@ -148,9 +148,14 @@ def refused(arguments: list[str], capsys) -> str:
         (b"\xed\xa1\xda\x01ab", "not one event"),
     ],
 )
-def test_what_is_no_log_is_one_line_and_nothing_is_written(tmp_path, capsys, content, named):
+@pytest.mark.parametrize("command", [["export", "--format", "mcap"], ["report"]])
+def test_what_is_no_log_is_one_line_and_nothing_is_written(
+    tmp_path, capsys, command, content, named
+):
     (tmp_path / "log").write_bytes(content)
-    assert named in refused([str(tmp_path / "log"), "--format", "mcap"], capsys)
+    assert main([*command, str(tmp_path / "log")]) == 2
+    told = capsys.readouterr()
+    assert (told.out, told.err.count("\n")) == ("", 1) and named in told.err
     assert [path.name for path in tmp_path.iterdir()] == ["log"]
 
 

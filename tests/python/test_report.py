@@ -371,20 +371,6 @@ def refused(arguments: list[str], capsys) -> str:
     return told.err
 
 
-@pytest.mark.parametrize(
-    ("content", "named"),
-    [
-        (b"", "is empty"),
-        (b"t_s,x\n1,2\n", "is no LCM log"),
-        (b"\xed\xa1\xda\x01ab", "not one event"),
-    ],
-)
-def test_what_is_no_log_is_one_line_and_nothing_is_written(tmp_path, capsys, content, named):
-    (tmp_path / "log").write_bytes(content)
-    assert named in refused([str(tmp_path / "log")], capsys)
-    assert [path.name for path in tmp_path.iterdir()] == ["log"]
-
-
 def test_logs_of_others_and_of_two_firmwares_at_once_are_refused(walk, tmp_path, capsys):
     others = write_events(tmp_path / "others", [Event(1, "CAMERA", b"picture")])
     assert "1 messages, on 'CAMERA', is one" in refused([str(others)], capsys)

@@ -343,11 +343,10 @@ static void redirect_swing(saddle_cycle_t *cycle, const saddle_config_t *config,
 }
 
 /* A last swing that ends after a way of way_m comes to rest no harder than allowed. */
-static bool can_brake(const saddle_cycle_t *cycle, const saddle_config_t *config, float way_m)
+static bool can_end(const saddle_cycle_t *cycle, const saddle_config_t *config, float way_m)
 {
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
-    return !cycle->last_swing ||
-           speed_m_s * speed_m_s <= 2.0f * config->acceleration_m_s2 * way_m;
+    return !cycle->last_swing || saddle_can_brake(speed_m_s, config->acceleration_m_s2, way_m);
 }
 
 bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
@@ -366,7 +365,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
         x_m < LANDING_STRETCH_MAX * old_x_m ||
         length_m > larger(body->half_step_max_m, cycle->quarter.length_m) ||
         !landing_usable(cycle, config, body, step_m, (saddle_vec2_t){x_m, lateral.value}) ||
-        (x_m > old_x_m && !can_brake(cycle, config, -x_m))) {
+        (x_m > old_x_m && !can_end(cycle, config, -x_m))) {
         return false;
     }
     saddle_swing_state_t foot;

@@ -284,7 +284,7 @@ static void choose_last_swing(saddle_planner_t *planner, const saddle_config_t *
     saddle_cycle_t *cycle = &planner->cycle;
     if (saddle_cycle_before_landing(cycle)) {
         const float way_m = stopping_way_m(cycle);
-        cycle->last_swing = speed_m_s * speed_m_s <= 2.0f * config->acceleration_m_s2 * way_m;
+        cycle->last_swing = saddle_can_brake(speed_m_s, config->acceleration_m_s2, way_m);
         planner->braking = planner->braking && cycle->last_swing;
     }
 }

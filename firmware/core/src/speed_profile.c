@@ -27,6 +27,11 @@ saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t 
            saddle_position_from_m(0.5f * change_m_s * change_time_s);
 }
 
+bool saddle_can_brake(float speed_m_s, float rate_m_s2, float way_m)
+{
+    return speed_m_s * speed_m_s <= 2.0f * rate_m_s2 * way_m;
+}
+
 /* Way on which the target is reached. */
 static float change_way_m(const saddle_pace_t *pace)
 {

@@ -8,7 +8,6 @@ bus; only `clock` and `stall` happen to the firmware itself. Times are seconds o
 import heapq
 import itertools
 import math
-import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -18,6 +17,7 @@ import can
 import numpy as np
 
 from saddlewalk.errors import UserError
+from saddlewalk.toml_file import read_toml
 from saddlewalk.transport import wire
 
 MESSAGES = ("COMMAND", "MEASURED_COM", "MEASURED_LEFT", "MEASURED_RIGHT")
@@ -279,13 +279,7 @@ class Line:
 
 def read_scenario(path: Path) -> Scenario:
     """Raises UserError naming the file, the table, the key and what would be right."""
-    try:
-        tables = tomllib.loads(path.read_text())
-    except OSError as error:
-        raise UserError(f"{path}: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UserError(f"{path}: not TOML: {error}") from error
-    top = _Table(str(path), tables, {"walk", "fault"})
+    top = _Table(str(path), read_toml(path), {"walk", "fault"})
     walk = _Table(f"{path}: [walk]", top.get("walk", {}), {"speed_m_s", "duration_s"})
     faults = top.get("fault", [])
     if not isinstance(faults, list) or not faults:

@@ -8,7 +8,6 @@ import importlib.util
 import math
 import multiprocessing
 import re
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -20,6 +19,7 @@ import numpy as np
 from saddlewalk.errors import UserError
 from saddlewalk.gait.recording import ABSURD_M, Recording, load_recording
 from saddlewalk.paths import install_command
+from saddlewalk.toml_file import read_toml
 
 POINTS = ("front", "rear", "left_heel", "left_toe", "right_heel", "right_toe")
 MAY_BE_MISSING = ("left_toe", "right_toe")
@@ -62,12 +62,7 @@ def load_walk(source: str, markers: Markers | None = None) -> Recording:
 
 def read_markers(path: Path) -> Markers:
     """The mapping file: TOML with a list of marker names for any of POINTS."""
-    try:
-        mapping = tomllib.loads(path.read_text())
-    except OSError as error:
-        raise UserError(f"--markers {path}: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UserError(f"{path}: not TOML: {error}") from error
+    mapping = read_toml(path, "--markers")
     for point, names in mapping.items():
         if point not in POINTS:
             raise UserError(f"{path}: {point} is not one of {', '.join(POINTS)}")

@@ -9,7 +9,7 @@ import can
 import lcm
 
 from saddlewalk.errors import UserError
-from saddlewalk.transport.lcmbus import standard_error_silent
+from saddlewalk.standard_error import standard_error_silent
 
 LCM_START = bytes.fromhex("eda1da01")
 CHANNEL_PREFIX = "SADDLEWALK_"

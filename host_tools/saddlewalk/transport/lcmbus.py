@@ -1,15 +1,12 @@
 """LCM for the host tools."""
 
-import contextlib
-import os
 import select
 import time
-from collections.abc import Iterator
-from pathlib import Path
 
 import lcm
 
 from saddlewalk.errors import UserError
+from saddlewalk.standard_error import standard_error_silent
 
 DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"
 ROUTE = "sudo ip route add 224.0.0.0/4 dev lo"
@@ -47,16 +44,3 @@ def listen(bus: lcm.LCM, for_s: float) -> None:
     deadline_s = time.monotonic() + for_s
     while (left_s := deadline_s - time.monotonic()) > 0:
         receive(bus, left_s)
-
-
-@contextlib.contextmanager
-def standard_error_silent() -> Iterator[None]:
-    """The LCM library explains at length why it cannot start; the error does so in one line."""
-    saved = os.dup(2)
-    with Path(os.devnull).open("wb") as nowhere:
-        os.dup2(nowhere.fileno(), 2)
-    try:
-        yield
-    finally:
-        os.dup2(saved, 2)
-        os.close(saved)

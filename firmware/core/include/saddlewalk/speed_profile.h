@@ -3,6 +3,7 @@
 #define SADDLEWALK_SPEED_PROFILE_H
 
 #include <saddlewalk/saddle_fixed.h>
+#include <stdbool.h>
 
 /** Longest time that is predicted; what never comes is said to come then. */
 #define SADDLE_TIME_MAX_S 1000.0f
@@ -18,6 +19,9 @@ saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t 
 
 /** The speed after a further way_m >= 0. */
 saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile, float way_m);
+
+/** Whether way_m is enough to come to rest no harder than at rate_m_s2. */
+bool saddle_can_brake(float speed_m_s, float rate_m_s2, float way_m);
 
 /** A profile in floats, to foretell by. */
 typedef struct {

@@ -4,13 +4,10 @@ It walks from standing to standing, so its plan is a first and a last double sup
 strides that are asked for. It plans for a robot; this one is the simplest that it takes.
 """
 
-import contextlib
-import os
-from collections.abc import Iterator
-
 import numpy as np
 
 from saddlewalk.benchmark.neighbours import MissingError
+from saddlewalk.standard_error import standard_error_silent
 
 # What a foot is to the walking QP as well: placo's feet lie along x, m.
 FOOT_WIDTH_M = 0.08
@@ -27,7 +24,7 @@ class PlacoWalk:
         self, step_m: float, step_time_s: float, width_m: float, height_m: float, period_s: float
     ) -> None:
         try:
-            with _quiet():
+            with standard_error_silent():
                 import placo
 
                 self._robot = placo.HumanoidRobot(
@@ -85,16 +82,3 @@ def _joint(parent: str, child: str, place: str) -> str:
         f'<joint name="to_{child}" type="revolute"><parent link="{parent}"/><child link="{child}"/>'
         f'<origin xyz="{place}"/><axis xyz="0 1 0"/>{_LIMIT}</joint>'
     )
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Without what C++ writes to standard error: that the biped has no head."""
-    kept = os.dup(2)
-    with open(os.devnull, "w") as nowhere:  # noqa: PTH123
-        os.dup2(nowhere.fileno(), 2)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
