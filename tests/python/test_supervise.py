@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main
-from saddlewalk.commands.supervise import SCORE_COLUMNS, STATE_COLUMNS
+from saddlewalk.recorded_states import SCORE_COLUMNS, STATE_COLUMNS
 from twin import GRAVITY, Twin, bos_margin
 
 TOLERANCE = 2e-5

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main
-from saddlewalk.commands.supervise import STATE_COLUMNS
+from saddlewalk.recorded_states import STATE_COLUMNS
 from twin import GRAVITY, Twin, bos_margin, to_saddle
 
 SPEEDS = [0.5, 0.7, 1.0, 1.2, 1.6]

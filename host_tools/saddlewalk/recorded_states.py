@@ -1,0 +1,106 @@
+"""Recorded states of a walker in, the supervisor's scores out: a row of a table each."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from saddlewalk.core import Command, Core, Measurement, ffi, library
+from saddlewalk.errors import UserError
+from saddlewalk.table import Cell
+from saddlewalk.verdict import level_name
+
+STATE_COLUMNS = (
+    "t_s com_x_m com_y_m com_z_m com_vx_m_s com_vy_m_s left_x_m left_y_m right_x_m right_y_m "
+    "left_contact right_contact"
+).split()
+SCORE_COLUMNS = (
+    "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m ebos_com_m ebos_xcom_m "
+    "excess_stop_j excess_track_j can_stop on_track level flags"
+).split()
+
+
+def recording_core(config: Any) -> Core:
+    """A core that goes on whatever a recording lacks. config: saddle_config_t, not changed."""
+    patient = ffi().new("saddle_config_t *", config[0])
+    patient.lost_inputs_stop = 0.0
+    return Core(patient)
+
+
+def scored_rows(
+    core: Core, command: Command, measurements: Iterable[tuple[float, Measurement]]
+) -> Iterator[list[Cell]]:
+    """A row of SCORE_COLUMNS for each time in seconds and what was measured then."""
+    start_s = None
+    for t_s, measurement in measurements:
+        start_s = t_s if start_s is None else start_s
+        yield score_row(t_s, core.tick(round((t_s - start_s) * 1e6), command, measurement))
+
+
+def measurement_of(where: str, state: Mapping[str, float]) -> Measurement:
+    """Of the STATE_COLUMNS; what is not finite was not measured.
+
+    Raises UserError, beginning with `where`, for a contact that is neither 0 nor 1.
+    """
+    left_contact = _contact(where, state, "left_contact")
+    right_contact = _contact(where, state, "right_contact")
+    return Measurement(
+        com_height_m=state["com_z_m"] if math.isfinite(state["com_z_m"]) else None,
+        com_velocity_m_s=_known(state["com_vx_m_s"], state["com_vy_m_s"]),
+        left_cop_m=_relative(state, "left") if left_contact is not None else None,
+        right_cop_m=_relative(state, "right") if right_contact is not None else None,
+        left_contact=bool(left_contact),
+        right_contact=bool(right_contact),
+    )
+
+
+def _known(x: float, y: float) -> tuple[float, float] | None:
+    return (x, y) if math.isfinite(x) and math.isfinite(y) else None
+
+
+def _relative(state: Mapping[str, float], foot: str) -> tuple[float, float] | None:
+    return _known(state[f"{foot}_x_m"] - state["com_x_m"], state[f"{foot}_y_m"] - state["com_y_m"])
+
+
+def _contact(where: str, state: Mapping[str, float], column: str) -> bool | None:
+    value = state[column]
+    if not math.isfinite(value):
+        return None
+    if value not in (0.0, 1.0):
+        raise UserError(f"{where}, {column}: {value:g} must be 0 or 1")
+    return bool(value)
+
+
+def score_row(t_s: float, output: Any) -> list[Cell]:
+    """Cells of SCORE_COLUMNS from a saddle_output_t; None: a result that is not there."""
+    core, scores, verdict = library(), output.scores, output.verdict
+
+    def scored(value: float, bit: int, faults_with_zero: int = 0) -> float | None:
+        known = scores.valid & bit or output.faults & faults_with_zero
+        return value if known else None
+
+    def compared(value: float, bit: int = 0) -> float | None:
+        return value if verdict.compared and scores.valid & bit == bit else None
+
+    infeasible = core.SADDLE_FAULT_SPEED_INFEASIBLE
+    return [
+        t_s,
+        scored(scores.v_comp_m_s, core.SADDLE_VALID_V_COMP),
+        scored(scores.s_pend, core.SADDLE_VALID_STEP, infeasible),
+        scored(scores.s_jump, core.SADDLE_VALID_STEP, infeasible),
+        scored(scores.s_sw, core.SADDLE_VALID_S_SW),
+        scored(scores.mos_com_m, core.SADDLE_VALID_MOS_COM),
+        scored(scores.mos_xcom_m, core.SADDLE_VALID_MOS_XCOM),
+        compared(verdict.ebos_com_m),
+        compared(verdict.ebos_xcom_m),
+        scored(scores.excess_stop_j, core.SADDLE_VALID_STOP),
+        compared(verdict.excess_track_j, core.SADDLE_VALID_STOP),
+        scored(int(scores.can_stop), core.SADDLE_VALID_STOP),
+        compared(int(verdict.on_track), core.SADDLE_VALID_STOP),
+        level_name(verdict.level),
+        _flags(output),
+    ]
+
+
+def _flags(output: Any) -> str:
+    """Hex: bits 0-15 saddle_fault_t, 16-23 saddle_limit_t, 24-31 the saddle_reason_t."""
+    return f"0x{output.faults | output.limits << 16 | output.verdict.reason << 24:08x}"
