@@ -18,7 +18,8 @@ typedef enum {
 /** The line so far. Start from all zeros. */
 typedef struct {
     char line[SADDLE_SLCAN_LINE];
-    size_t length; /**< characters that came, kept or not */
+    size_t length; /**< characters kept; SADDLE_SLCAN_LINE, too long for a frame, if
+                        more came */
 } saddle_slcan_reader_t;
 
 /** Take a character. SADDLE_SLCAN_FRAME: frame has been written, but for came_us; else it has not. */

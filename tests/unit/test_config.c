@@ -175,14 +175,15 @@ static void test_reach_that_lays_the_pendulum_flat_is_named(void)
     TEST_ASSERT_EQUAL_STRING("peak_speed_m_s", saddle_config_check(&config));
 }
 
-static void test_longer_side_that_lays_the_pendulum_flat_is_named(void)
+static void test_longer_side_that_does_not_reach_its_shortest_step_is_named(void)
 {
-    config.peak_speed_m_s = 3.9f; /* reach 0.629 m; 1.4 times that with 0.22 m: 0.824 of 0.833 m^2 */
-    config.step_length_factor_right = 1.4f;
+    config.half_step_intercept_m = 0.35f; /* reach 0.4838 m; the shortest 1.05 times 0.3536 m */
     TEST_ASSERT_NULL(saddle_config_check(&config));
-    config.step_length_factor_right = 1.0f;
-    config.step_length_factor_left = 1.42f; /* 0.846 */
-    TEST_ASSERT_EQUAL_STRING("peak_speed_m_s", saddle_config_check(&config));
+    config.step_length_factor_right = 1.29f; /* 0.479 m */
+    TEST_ASSERT_NULL(saddle_config_check(&config));
+    config.step_length_factor_right = 0.5f;
+    config.step_length_factor_left = 1.31f; /* 0.486 m */
+    TEST_ASSERT_EQUAL_STRING("half_step_intercept_m", saddle_config_check(&config));
 }
 
 int main(void)
@@ -201,6 +202,6 @@ int main(void)
     RUN_TEST(test_half_step_out_of_reach_is_named);
     RUN_TEST(test_configuration_without_a_feasible_walk_is_named);
     RUN_TEST(test_reach_that_lays_the_pendulum_flat_is_named);
-    RUN_TEST(test_longer_side_that_lays_the_pendulum_flat_is_named);
+    RUN_TEST(test_longer_side_that_does_not_reach_its_shortest_step_is_named);
     return UNITY_END();
 }

@@ -1,6 +1,7 @@
 /** The gait cycle by itself: where it begins, its via points, half swings, landings refused. */
 #include "core_test.h"
 
+#include <fenv.h>
 #include <saddlewalk/gait_cycle.h>
 
 static saddle_config_t config;
@@ -208,6 +209,16 @@ static void test_landings_that_are_refused_change_nothing(void)
     TEST_ASSERT_FALSE(land_at(0.0f, 0.0f)); /* no landing yet */
 }
 
+/* A last swing that stands beside its foot has no quarter left to stretch. */
+static void test_landing_beside_the_stance_foot_divides_nothing_by_zero(void)
+{
+    walk_to_landing(true, 0);
+    cycle.position = 0;
+    feclearexcept(FE_ALL_EXCEPT);
+    TEST_ASSERT_FALSE(land_at(0.05f, 0.0f));
+    TEST_ASSERT_EQUAL_HEX32(0, fetestexcept(FE_DIVBYZERO | FE_INVALID));
+}
+
 static void test_landing_far_beyond_a_short_step_or_the_leg_is_refused(void)
 {
     bool arrived;
@@ -299,6 +310,7 @@ int main(void)
     RUN_TEST(test_last_swing_comes_to_rest_beside_the_stance_foot);
     RUN_TEST(test_last_swing_that_has_lost_its_speed_has_arrived);
     RUN_TEST(test_landings_that_are_refused_change_nothing);
+    RUN_TEST(test_landing_beside_the_stance_foot_divides_nothing_by_zero);
     RUN_TEST(test_landing_far_beyond_a_short_step_or_the_leg_is_refused);
     RUN_TEST(test_swing_goes_on_from_where_it_is_when_a_late_landing_is_taken_over);
     RUN_TEST(test_next_line_is_between_half_and_twice_a_step_width);

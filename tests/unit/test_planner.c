@@ -787,6 +787,22 @@ static void test_speed_is_limited_to_what_is_feasible(void)
     }
 }
 
+static void test_longer_side_stays_within_reach_up_to_the_ceiling(void)
+{
+    const float factors[] = {1.0f, 1.2f, 1.5f};
+    for (size_t i = 0; i < COUNT_OF(factors); i++) {
+        config.step_length_factor_left = factors[i];
+        stand(10.0f);
+        float longest_m = 0.0f;
+        for (int k = 0; k < 200; k++) {
+            tick(80000);
+            longest_m = fmaxf(longest_m, 0.5f * plan.step_length_m);
+        }
+        TEST_ASSERT_TRUE(longest_m < body.half_step_max_m);
+        TEST_ASSERT_TRUE(longest_m > 0.98f * body.half_step_max_m);
+    }
+}
+
 static void test_heel_strike_angle_is_limited(void)
 {
     const struct {
@@ -867,6 +883,7 @@ int main(void)
     RUN_TEST(test_events_are_foretold_between_ticks);
     RUN_TEST(test_sides_step_by_their_own_factors);
     RUN_TEST(test_speed_is_limited_to_what_is_feasible);
+    RUN_TEST(test_longer_side_stays_within_reach_up_to_the_ceiling);
     RUN_TEST(test_heel_strike_angle_is_limited);
     RUN_TEST(test_limits_of_one_command_end_with_it);
     RUN_TEST(test_usable_commands);

@@ -94,6 +94,43 @@ static void test_change_is_rate_times_time(void)
     TEST_ASSERT_TRUE(saddle_speed_change(0.0f, 80000) == 0);
 }
 
+/* Numbers of any bits: an answer within the range, and nothing that C leaves undefined, which the
+ * sanitizers of make test-sanitize see. */
+static void test_any_bits_give_a_number_within_the_range(void)
+{
+    static const float speeds[] = {4.0f, 1e9f, HUGE_VALF, NAN, 2147483648.0f};
+    const saddle_fixed_t position_max = saddle_position_from_m(2.0f);
+    const saddle_fixed_t speed_max = saddle_speed_from_m_s(4.0f);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0, metres(position_max));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 4.0, (double)speed_max / UNITS);
+    for (size_t i = 0; i < COUNT_OF(speeds); i++) {
+        const bool number = speeds[i] == speeds[i];
+        TEST_ASSERT_TRUE(saddle_speed_from_m_s(speeds[i]) == (number ? speed_max : 0));
+        TEST_ASSERT_TRUE(saddle_speed_from_m_s(-speeds[i]) == (number ? -speed_max : 0));
+        TEST_ASSERT_TRUE(saddle_position_from_m(speeds[i]) == (number ? position_max : 0));
+    }
+    uint32_t state = 11;
+    for (int i = 0; i < 100000; i++) {
+        const float value = float_of_bits(random_bits(&state));
+        const int64_t bits = (int64_t)random_bits(&state) * 2147483648 + (int64_t)random_bits(&state);
+        const saddle_fixed_t any = random_bits(&state) % 2u == 0u ? bits : -bits;
+        const uint32_t dt_us = random_bits(&state);
+        const saddle_fixed_t position = saddle_position_from_m(value);
+        const saddle_fixed_t speed = saddle_speed_from_m_s(value);
+        TEST_ASSERT_TRUE(position >= -position_max && position <= position_max);
+        TEST_ASSERT_TRUE(speed >= -speed_max && speed <= speed_max);
+        const saddle_fixed_t way = saddle_speed_times_s(any, value);
+        TEST_ASSERT_TRUE(way >= -position_max && way <= position_max);
+        const saddle_fixed_t sum = saddle_position_sum(any, position);
+        TEST_ASSERT_TRUE(sum >= -position_max && sum <= position_max);
+        const double change = (double)saddle_speed_change(value, dt_us) / UNITS;
+        TEST_ASSERT_TRUE(fabs(change) <= 160.0);
+        TEST_ASSERT_TRUE(fabsf(saddle_position_to_m(any)) <= 2.1f);
+        TEST_ASSERT_TRUE(fabsf(saddle_speed_to_m_s(any)) <= 4.0f);
+        (void)saddle_position_to_nm(any);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -102,5 +139,6 @@ int main(void)
     RUN_TEST(test_nanometres_are_the_nearest);
     RUN_TEST(test_way_is_speed_times_time);
     RUN_TEST(test_change_is_rate_times_time);
+    RUN_TEST(test_any_bits_give_a_number_within_the_range);
     return UNITY_END();
 }

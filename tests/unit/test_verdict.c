@@ -715,6 +715,27 @@ static void test_walk_of_one_s_own_at_no_speed_is_unknown(void)
     }
 }
 
+/* A body whose regression goes beyond its reach: 0.56 s of 3.85 m/s would be half a step of 2.3 m. */
+static void test_walk_above_the_ceiling_steps_no_further_than_the_leg_reaches(void)
+{
+    const walk_t own = walk_at(1.2, SADDLE_LEFT);
+    config.half_step_slope_s = 0.56f;
+    TEST_ASSERT_NULL(saddle_config_check(&config));
+    body = saddle_body(&config);
+    intent = (saddle_intent_t){.leads = false};
+    const float speeds[] = {1.0f, 1.01f * body.speed_ceiling_m_s, 2.5f, 3.85f};
+    for (size_t i = 0; i < COUNT_OF(speeds); i++) {
+        has_walked(&own);
+        supervisor.steps.v_comp_m_s = speeds[i];
+        measure(&own, 0.1, NONE);
+        measured.com.velocity_m_s.x = speeds[i];
+        update(0);
+        TEST_ASSERT_TRUE(verdict.compared);
+        TEST_ASSERT_DOUBLE_WITHIN(2.0, 0.0, verdict.ebos_com_m);
+        TEST_ASSERT_DOUBLE_WITHIN(2.0, 0.0, verdict.ebos_xcom_m);
+    }
+}
+
 static void test_walk_of_one_s_own_is_judged_by_its_scores(void)
 {
     const walk_t own = walk_at(1.2, SADDLE_LEFT);
@@ -885,6 +906,7 @@ int main(void)
     RUN_TEST(test_way_behind_the_stance_foot_is_the_last_half_step);
     RUN_TEST(test_walk_of_one_s_own_goes_on_at_its_own_width);
     RUN_TEST(test_walk_of_one_s_own_at_no_speed_is_unknown);
+    RUN_TEST(test_walk_above_the_ceiling_steps_no_further_than_the_leg_reaches);
     RUN_TEST(test_walk_of_one_s_own_is_judged_by_its_scores);
     RUN_TEST(test_wearer_who_lags_behind_the_plan_has_departed_from_it);
     RUN_TEST(test_wearer_on_another_foot_than_the_plan_is_in_a_step_of_their_own);

@@ -116,7 +116,9 @@ bool saddle_ankle_for_leg(const saddle_config_t *config, const saddle_body_t *bo
 {
     const float elongation = leg_length_m - body->pendulum_m;
     const float sine = elongation / (2.0f * config->cop_range_m);
-    const float angle_rad = 2.0f * saddle_asin(saddle_clamp(sine, 0.0f, 1.0f));
+    const float wanted_rad = 2.0f * saddle_asin(saddle_clamp(sine, 0.0f, 1.0f));
+    const bool limited = wanted_rad > SADDLE_HALF_PI;
+    const float angle_rad = limited ? SADDLE_HALF_PI : wanted_rad;
     at_rest(body, ankle);
     ankle->leg_length_m = leg_length_m;
     if (toe_off_acts) {
@@ -125,5 +127,5 @@ bool saddle_ankle_for_leg(const saddle_config_t *config, const saddle_body_t *bo
         ankle->heel_strike_rad = angle_rad;
     }
     ankle->knee_flexion_m = elongation < 0.0f ? -elongation : 0.0f;
-    return sine <= 1.0f;
+    return !limited;
 }

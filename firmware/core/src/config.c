@@ -149,15 +149,21 @@ static const char *check_step_width(const saddle_config_t *config)
     return NULL;
 }
 
-/* The reach peak_speed / (2 w_n) must exceed the shortest half step, and the pendulum must reach
- * from there, on the longer side, to the CoM without lying flat. */
+float saddle_longer_step_factor(const saddle_config_t *config)
+{
+    return larger(1.0f, larger(config->step_length_factor_left, config->step_length_factor_right));
+}
+
+/* The reach peak_speed / (2 w_n) must exceed the shortest half step, on the longer side, and the
+ * pendulum must reach from there to the CoM without lying flat. */
 static const char *check_reach(const saddle_config_t *config)
 {
     const float pendulum_m = config->pendulum_ratio * config->body_height_m;
     const float reach_m2 = config->peak_speed_m_s * config->peak_speed_m_s * pendulum_m /
                            (4.0f * SADDLE_GRAVITY_M_S2);
     const float shortest_m =
-        1.05f * (config->half_step_slope_s * CEILING_MIN_M_S + config->half_step_intercept_m);
+        saddle_longer_step_factor(config) * 1.05f *
+        (config->half_step_slope_s * CEILING_MIN_M_S + config->half_step_intercept_m);
     const float width_m =
         larger(larger(config->step_width_slow_m, config->step_width_fast_m),
                larger(sloped_width_m(config, config->step_width_slow_speed_m_s),
@@ -165,9 +171,7 @@ static const char *check_reach(const saddle_config_t *config)
     if (reach_m2 < shortest_m * shortest_m) {
         return "half_step_intercept_m";
     }
-    const float factor =
-        larger(1.0f, larger(config->step_length_factor_left, config->step_length_factor_right));
-    if (factor * factor * reach_m2 + width_m * width_m > 0.8f * pendulum_m * pendulum_m) {
+    if (reach_m2 + width_m * width_m > 0.8f * pendulum_m * pendulum_m) {
         return "peak_speed_m_s";
     }
     return NULL;

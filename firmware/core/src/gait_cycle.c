@@ -356,13 +356,15 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
     const float dx_m = step_m.x - cycle->last_step_m.x;
     const float dy_m = step_m.y - cycle->last_step_m.y;
     const float old_x_m = saddle_position_to_m(cycle->position);
+    if (saddle_cycle_before_landing(cycle) || -2.0f * old_x_m < cycle->quarter.length_m ||
+        air_after_landing(cycle, old_x_m) > LANDING_AIR_MAX) {
+        return false;
+    }
     const float x_m = old_x_m - dx_m;
     const float length_m = cycle->quarter.length_m * x_m / old_x_m;
     saddle_sample_t lateral = lateral_at(cycle, old_x_m);
     lateral.value -= dy_m;
-    if (saddle_cycle_before_landing(cycle) || -2.0f * old_x_m < cycle->quarter.length_m ||
-        air_after_landing(cycle, old_x_m) > LANDING_AIR_MAX ||
-        x_m < LANDING_STRETCH_MAX * old_x_m ||
+    if (x_m < LANDING_STRETCH_MAX * old_x_m ||
         length_m > larger(body->half_step_max_m, cycle->quarter.length_m) ||
         !landing_usable(cycle, config, body, step_m, (saddle_vec2_t){x_m, lateral.value}) ||
         (x_m > old_x_m && !can_end(cycle, config, -x_m))) {

@@ -12,12 +12,14 @@ static float half_step_m(const saddle_config_t *config, float speed_m_s)
     return config->half_step_slope_s * speed_m_s + config->half_step_intercept_m;
 }
 
-/* Where the regression meets the reach, or the XCoM limit v / (2 w_n) if that comes first. */
+/* Where the regression, on the side of the longer steps, meets the reach, or the XCoM limit
+ * v / (2 w_n) if that comes first. */
 static float speed_ceiling_m_s(const saddle_config_t *config, const saddle_body_t *body)
 {
     const float xcom_slope_s = 0.5f / body->natural_frequency_rad_s;
     const float slope_s = config->half_step_slope_s;
-    const float reached_m_s = (body->half_step_max_m - config->half_step_intercept_m) / slope_s;
+    const float longest_m = body->half_step_max_m / saddle_longer_step_factor(config);
+    const float reached_m_s = (longest_m - config->half_step_intercept_m) / slope_s;
     if (half_step_m(config, reached_m_s) < xcom_slope_s * reached_m_s) {
         return config->half_step_intercept_m / (xcom_slope_s - slope_s);
     }
@@ -66,8 +68,8 @@ saddle_fixed_t saddle_half_step(const saddle_config_t *config, saddle_side_t foo
 {
     const float factor =
         foot == SADDLE_LEFT ? config->step_length_factor_left : config->step_length_factor_right;
-    return saddle_speed_times_s(speed, factor * config->half_step_slope_s) +
-           saddle_position_from_m(factor * config->half_step_intercept_m);
+    return saddle_position_sum(saddle_speed_times_s(speed, factor * config->half_step_slope_s),
+                               saddle_position_from_m(factor * config->half_step_intercept_m));
 }
 
 float saddle_landing_y_m(const saddle_config_t *config, saddle_side_t foot, float speed_m_s)

@@ -5,7 +5,7 @@
 /* A foot that landed by less ahead made no step to go by. */
 #define HALF_STEP_MIN_M 0.02f
 
-/* Walks that a measured one is compared with; fixed point holds speeds below 4 m/s. */
+/* Walks that a measured one is compared with. */
 #define SPEED_MIN_M_S 0.01f
 #define SPEED_MAX_M_S 3.9f
 
@@ -213,14 +213,16 @@ static void compare_standing(const saddle_config_t *config, const saddle_body_t 
     saddle_recovery_step(config, body, &to_catch, &verdict->recovery);
 }
 
-/* The step that a steady walk makes on the stance foot, after a step as the last one was. */
-static saddle_step_t usual_step(const saddle_config_t *config, const saddle_step_tracker_t *steps,
-                                float speed_m_s)
+/* The step that a steady walk makes on the stance foot, after a step as the last one was. Who is
+ * faster than the ceiling makes steps of full reach. */
+static saddle_step_t usual_step(const saddle_config_t *config, const saddle_body_t *body,
+                                const saddle_step_tracker_t *steps, float speed_m_s)
 {
     const saddle_side_t stance = (saddle_side_t)steps->stance;
     const saddle_side_t foot = saddle_other_side(stance);
+    const float walked_m_s = saddle_clamp(speed_m_s, 0.0f, body->speed_ceiling_m_s);
     const float half_step_m =
-        saddle_position_to_m(saddle_half_step(config, foot, saddle_speed_from_m_s(speed_m_s)));
+        saddle_position_to_m(saddle_half_step(config, foot, saddle_speed_from_m_s(walked_m_s)));
     const float width_m = saddle_step_width_m(config, speed_m_s);
     const bool stepped = steps->half_step_known && steps->half_step_m > HALF_STEP_MIN_M;
     const float last_width_m =
@@ -311,7 +313,7 @@ static void compare(const saddle_config_t *config, const saddle_body_t *body,
     const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
     const float speed_m_s = intent->leads ? intent->step.speed_m_s : steps->v_comp_m_s;
     if (walks && saddle_in_range(speed_m_s, SPEED_MIN_M_S, SPEED_MAX_M_S)) {
-        const saddle_step_t step = usual_step(config, steps, speed_m_s);
+        const saddle_step_t step = usual_step(config, body, steps, speed_m_s);
         compare_step(config, body, measurement, posture, scores, &step,
                      posture->com_m.x - posture->cop_m[step.stance].x, verdict);
     } else if (!walks && (intent->leads || steps->stands)) {

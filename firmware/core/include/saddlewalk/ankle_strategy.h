@@ -54,8 +54,8 @@ void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m
 saddle_sample_t saddle_cycloid(const saddle_body_t *body, const saddle_quarter_t *quarter,
                                float angle_rad);
 
-/** [E25] The ankle angle that gives the stance leg its length: of toe-off or of heel strike. False
- *  if an angle beyond the geometry had to be limited. */
+/** [E25] The ankle angle that gives the stance leg its length: of toe-off or of heel strike, at
+ *  most pi/2, the sole upright. False if it would be more. */
 bool saddle_ankle_for_leg(const saddle_config_t *config, const saddle_body_t *body,
                           float leg_length_m, bool toe_off_acts, saddle_ankle_state_t *ankle);
 

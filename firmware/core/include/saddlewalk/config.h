@@ -83,6 +83,9 @@ saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg);
  *  config must not be NULL. */
 const char *saddle_config_check(const saddle_config_t *config);
 
+/** Of the symmetric step, the longer one of the two feet; at least 1. */
+float saddle_longer_step_factor(const saddle_config_t *config);
+
 /** The float field at an index, NULL past the last. For hosts that set fields by name. */
 const saddle_config_field_t *saddle_config_field(size_t index);
 

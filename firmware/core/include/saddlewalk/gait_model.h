@@ -15,7 +15,7 @@ typedef struct {
     float pendulum_m;            /**< l_p, [E1] */
     float natural_frequency_rad_s; /**< w_n, [E2] */
     float half_step_max_m;       /**< reach, [E6] */
-    float speed_ceiling_m_s;     /**< no speed at or above it is feasible, [E6] */
+    float speed_ceiling_m_s;     /**< no speed at or above it is planned, [E6] */
 } saddle_body_t;
 
 /** One quarter of the stride: from beside the stance foot (foot via point) to midway between the
