@@ -1,0 +1,27 @@
+/** [E31] The level of balance, why, and when it is announced. */
+#ifndef SADDLEWALK_LEVEL_H
+#define SADDLEWALK_LEVEL_H
+
+#include <saddlewalk/config.h>
+#include <saddlewalk/scores.h>
+#include <saddlewalk/verdict.h>
+#include <stdint.h>
+
+/** State, part of the context. */
+typedef struct {
+    uint8_t level, reason;       /**< announced */
+    uint8_t caution_reason;      /**< of the last caution */
+    uint8_t at_least_ticks[4];   /**< for how long the level has been this one or worse */
+    uint8_t at_most_ticks[4];    /**< and this one or better */
+} saddle_level_state_t;
+
+/** Decide and announce. faults: of the inputs and of the scores. Reads what the comparison wrote to
+ *  *verdict and writes its level and reason. */
+void saddle_level_update(saddle_level_state_t *state, const saddle_config_t *config,
+                         uint32_t faults, const saddle_scores_t *scores,
+                         saddle_verdict_t *verdict);
+
+/** No level holds over what is not known: begin again. */
+void saddle_level_reset(saddle_level_state_t *state);
+
+#endif
