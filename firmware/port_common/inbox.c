@@ -94,5 +94,6 @@ uint32_t saddle_inbox_rejected(const saddle_inbox_t *inbox)
 {
     const saddle_wire_receiver_t *receiver = &inbox->receiver;
     return receiver->malformed + receiver->bad_crc + receiver->bad_version +
-           receiver->bad_counter + receiver->bad_code + inbox->commands_unusable + inbox->commands_ignored;
+           receiver->bad_counter + receiver->bad_code + inbox->commands_unusable +
+           inbox->commands_ignored + inbox->commands_foreign;
 }

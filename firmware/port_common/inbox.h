@@ -30,6 +30,7 @@ typedef struct {
     uint32_t commands_obeyed;
     uint32_t commands_unusable; /**< unknown mode, number not finite, or no LCM command at all */
     uint32_t commands_ignored;  /**< of the source without authority */
+    uint32_t commands_foreign;  /**< by LCM from another machine, where those do not count */
 } saddle_inbox_t;
 
 /** Empty. chosen: see saddle_inbox_t. */

@@ -32,6 +32,7 @@ typedef struct {
     int receive_fd;            /**< becomes readable when something waits */
     int send_fd;               /**< the same one on SocketCAN */
     struct sockaddr_in group;  /**< UDP: where frames are sent */
+    bool on_loopback;          /**< UDP: does not leave this machine */
     struct sockaddr_in own;    /**< UDP: where they come from, to know our own again */
     char channel[64];          /**< SocketCAN: INTERFACE; UDP: GROUP:PORT or GROUP:PORT@INTERFACE */
     char description[200];     /**< what was chosen and why, or why it could not be opened */

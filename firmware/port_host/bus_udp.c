@@ -120,9 +120,9 @@ static bool fail(saddle_bus_t *bus, const char *interface_name)
 
 static void describe(saddle_bus_t *bus, const char *interface_name)
 {
-    const bool stays = strcmp(interface_name, LOOPBACK) == 0;
+    bus->on_loopback = strcmp(interface_name, LOOPBACK) == 0;
     snprintf(bus->description, sizeof bus->description, "UDP %.40s%s", bus->channel,
-             stays ? " on loopback" : ", which leaves this machine: anyone on that network may speak");
+             bus->on_loopback ? " on loopback" : ", which leaves this machine");
 }
 
 bool saddle_bus_udp_open(saddle_bus_t *bus)

@@ -1,10 +1,8 @@
 #include "lcm_port.h"
-#include "lcm_messages.h"
 
-#include "clock.h"
-#include <arpa/inet.h>
+#include "lcm_commands.h"
+#include "lcm_messages.h"
 #include <fcntl.h>
-#include <saddlewalk_command_t.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,46 +21,15 @@ static lcm_t *create_silently(const char *url)
     return lcm;
 }
 
-/** Whether the kernel's closest route to a multicast group leads to this machine itself. */
-static bool is_routed_to_loopback(uint32_t group)
-{
-    char line[256], interface_name[16];
-    unsigned destination, mask, closest = 0;
-    bool found = false, loopback = false;
-    FILE *routes = fopen("/proc/net/route", "r");
-    while (routes != NULL && fgets(line, sizeof line, routes) != NULL) {
-        if (sscanf(line, "%15s %x %*x %*x %*d %*d %*d %x", interface_name, &destination, &mask) ==
-                3 && (group & mask) == destination && (!found || ntohl(mask) > ntohl(closest))) {
-            found = true;
-            closest = mask;
-            loopback = strcmp(interface_name, "lo") == 0;
-        }
-    }
-    if (routes != NULL) {
-        fclose(routes);
-    }
-    return loopback;
-}
-
-/** With the default URL nothing leaves the machine, but a group that is routed to a network is
- *  heard from there too: LCM has no option for the interface. */
+/** liblcm's default is `ttl=0`. */
 static const char *reach_of(const char *url)
 {
-    static const char udpm[] = "udpm://";
-    char group[INET_ADDRSTRLEN] = "";
-    struct in_addr address;
-    if (strncmp(url, udpm, sizeof udpm - 1) != 0) {
+    const char *hops = strstr(url, "ttl=");
+    if (!saddle_lcm_commands_possible(url)) {
         return "";
     }
-    const char *hops = strstr(url, "ttl=");
-    if (hops != NULL && strtol(hops + 4, NULL, 10) > 0) {
-        return ", which leaves this machine: anyone on that network may speak";
-    }
-    (void)sscanf(url + sizeof udpm - 1, "%15[0-9.]", group);
-    return inet_pton(AF_INET, group, &address) == 1 && is_routed_to_loopback(address.s_addr)
-               ? " on loopback"
-               : ", which does not leave this machine, but hears others: "
-                 "`ip route add 224.0.0.0/4 dev lo` keeps them out";
+    return hops != NULL && strtol(hops + 4, NULL, 10) > 0 ? ", which leaves this machine"
+                                                          : " on this machine";
 }
 
 bool saddle_lcm_open(saddle_lcm_port_t *port, const char *url)
@@ -73,44 +40,6 @@ bool saddle_lcm_open(saddle_lcm_port_t *port, const char *url)
         snprintf(port->description, sizeof port->description, "%.60s%s", url, reach_of(url));
     }
     return port->lcm != NULL;
-}
-
-/** The generated handler drops what it cannot decode unseen; this one lets it be counted. */
-static void take_command(const lcm_recv_buf_t *received, const char *channel, void *user)
-{
-    const saddle_lcm_port_t *port = user;
-    const int size = (int)received->data_size;
-    saddlewalk_command_t message;
-    const uint32_t waited_us = saddle_since_us(received->recv_utime);
-    (void)channel;
-    if (saddlewalk_command_t_decode(received->data, 0, size, &message) != size) {
-        port->on_command(port->user, NULL, waited_us);
-        return;
-    }
-    const saddle_command_t command = {.mode = (uint8_t)message.mode,
-                                      .speed_m_s = message.speed_m_s,
-                                      .heel_strike_rad = message.heel_strike_rad};
-    port->on_command(port->user, &command, waited_us);
-}
-
-void saddle_lcm_subscribe(saddle_lcm_port_t *port, saddle_lcm_command_fn *on_command, void *user)
-{
-    if (port->lcm != NULL) {
-        port->on_command = on_command;
-        port->user = user;
-        lcm_subscribe(port->lcm, "SADDLEWALK_COMMAND", take_command, port);
-    }
-}
-
-int saddle_lcm_fd(const saddle_lcm_port_t *port)
-{
-    return port->on_command != NULL ? lcm_get_fileno(port->lcm) : -1;
-}
-
-void saddle_lcm_receive(saddle_lcm_port_t *port, int limit)
-{
-    while (port->on_command != NULL && limit-- > 0 && lcm_handle_timeout(port->lcm, 0) > 0) {
-    }
 }
 
 static void note_sent(saddle_lcm_port_t *port, bool sent)

@@ -1,6 +1,8 @@
 /** saddlewalk-host: the core on Linux, between CAN and LCM. Exit status 0: ended by SIGINT or
  *  SIGTERM; 2: an option is wrong, or CAN or LCM cannot be opened. */
 #include "bus.h"
+#include "commanders.h"
+#include "lcm_commands.h"
 #include "lcm_port.h"
 #include "options.h"
 #include "runner.h"
@@ -47,30 +49,56 @@ static void complain_about_lcm(const char *url)
             right);
 }
 
-static bool open_ports(const saddle_options_t *options, saddle_bus_t *bus, saddle_lcm_port_t *lcm)
+/** All that is open for a run. */
+typedef struct {
+    saddle_bus_t bus;
+    saddle_lcm_port_t lcm;
+    int lcm_commands_fd;
+} ports_t;
+
+static bool open_lcm(const saddle_options_t *options, ports_t *ports)
 {
-    if (!saddle_bus_open(bus, options->can)) {
-        fprintf(stderr, SADDLE_PROGRAM ": --can %s: %s\n", options->can, bus->description);
-        return false;
+    ports->lcm = (saddle_lcm_port_t){0};
+    ports->lcm_commands_fd = -1;
+    if (options->lcm == NULL) {
+        return true;
     }
-    *lcm = (saddle_lcm_port_t){0};
-    if (options->lcm != NULL && !saddle_lcm_open(lcm, options->lcm)) {
+    bool opened = saddle_lcm_open(&ports->lcm, options->lcm);
+    if (opened && saddle_options_lcm_commands(options)) {
+        ports->lcm_commands_fd = saddle_lcm_commands_open(options->lcm, options->lcm_from_network);
+        opened = ports->lcm_commands_fd >= 0;
+    }
+    if (!opened) {
         complain_about_lcm(options->lcm);
-        saddle_bus_close(bus);
+    }
+    return opened;
+}
+
+static bool open_ports(const saddle_options_t *options, ports_t *ports)
+{
+    if (!saddle_bus_open(&ports->bus, options->can)) {
+        fprintf(stderr, SADDLE_PROGRAM ": --can %s: %s\n", options->can, ports->bus.description);
         return false;
     }
-    return true;
+    return open_lcm(options, ports);
+}
+
+static void close_ports(ports_t *ports)
+{
+    saddle_lcm_close(&ports->lcm);
+    if (ports->lcm_commands_fd >= 0) {
+        close(ports->lcm_commands_fd);
+    }
+    saddle_bus_close(&ports->bus);
 }
 
 static void print_start(const saddle_options_t *options, const saddle_runner_t *runner)
 {
     const saddle_realtime_t *realtime = &runner->realtime;
-    printf(SADDLE_PROGRAM " " SADDLE_VERSION ": CAN %s; LCM %s; clock %s", runner->bus->description,
-           options->lcm != NULL ? runner->lcm->description : "none",
+    printf(SADDLE_PROGRAM " " SADDLE_VERSION ": CAN %s; LCM %s; clock %s; ",
+           runner->bus->description, options->lcm != NULL ? runner->lcm->description : "none",
            options->lockstep ? "lockstep" : "realtime");
-    if (options->command_key != NULL) {
-        printf("; commands must be vouched for");
-    }
+    saddle_print_commanders(options, runner->bus);
     if (realtime->fifo_priority != 0) {
         printf("; SCHED_FIFO %d", realtime->fifo_priority);
     }
@@ -111,11 +139,12 @@ static bool demand_codes(saddle_runner_t *runner, const char *path)
     return true;
 }
 
-static int run(const saddle_options_t *options, saddle_bus_t *bus, saddle_lcm_port_t *lcm)
+static int run(const saddle_options_t *options, ports_t *ports)
 {
     saddle_runner_t runner;
-    saddle_runner_init(&runner, &options->config, options->lockstep, options->command_from, bus,
-                       lcm, stop_pipe[0]);
+    saddle_runner_init(&runner, &options->config, options->lockstep, options->command_from,
+                       &ports->bus, &ports->lcm, stop_pipe[0]);
+    runner.lcm_commands_fd = ports->lcm_commands_fd;
     if (!demand_codes(&runner, options->command_key)) {
         return EXIT_BAD_INPUT;
     }
@@ -135,17 +164,15 @@ int main(int argc, char *argv[])
     if (parsed != SADDLE_OPTIONS_RUN) {
         return parsed == SADDLE_OPTIONS_HELP ? 0 : EXIT_BAD_INPUT;
     }
-    saddle_bus_t bus;
-    saddle_lcm_port_t lcm;
+    ports_t ports;
     if (!catch_signals()) {
         perror(SADDLE_PROGRAM ": signals");
         return 1;
     }
-    if (!open_ports(&options, &bus, &lcm)) {
+    if (!open_ports(&options, &ports)) {
         return EXIT_BAD_INPUT;
     }
-    const int status = run(&options, &bus, &lcm);
-    saddle_lcm_close(&lcm);
-    saddle_bus_close(&bus);
+    const int status = run(&options, &ports);
+    close_ports(&ports);
     return status;
 }

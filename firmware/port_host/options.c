@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include "lcm_commands.h"
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -114,9 +115,10 @@ static void print_help(const saddle_config_t *config)
          "  --can SPEC         auto (default), socketcan:INTERFACE, udp, udp:GROUP:PORT;\n"
          "                     udp:GROUP:PORT@INTERFACE leaves this machine\n"
          "  --lcm URL          default " DEFAULT_LCM "; none: without LCM\n"
-         "  --command-from X   whose commands are obeyed: can; lcm; first (default): the first\n"
-         "                     that commands, until it is silent and the walk has ended\n"
-         "  --command-key FILE obey only commands by CAN that are vouched for with this key\n"
+         "  --command-from X   accept commands from can; lcm; first (default): the first that\n"
+         "                     commands, until it is silent and the walk has ended\n"
+         "  --command-key FILE accept only commands by CAN that are authenticated with this key\n"
+         "  --lcm-from-network accept commands by LCM from other machines too\n"
          "  --fifo PRIORITY    schedule by SCHED_FIFO, 1 to 99, and keep all memory in place\n"
          "  --clock CLOCK      realtime (default); lockstep: one tick per set of measurements\n"
          "  --ankle ANKLE      ankle strategy: erf (default), rigid, cycloid\n"
@@ -141,6 +143,7 @@ static bool take_option(saddle_options_t *options, int letter, char *argv[])
     case 'm': return set_command_from(options, optarg);
     case 'y': options->command_key = optarg; return true;
     case 'f': return set_fifo(options, optarg);
+    case 'n': options->lcm_from_network = true; return true;
     case ':':
         fprintf(stderr, SADDLE_PROGRAM ": %s: give a value (see --help)\n", argv[optind - 1]);
         return false;
@@ -151,17 +154,38 @@ static bool take_option(saddle_options_t *options, int letter, char *argv[])
     }
 }
 
+bool saddle_options_lcm_commands(const saddle_options_t *options)
+{
+    return options->lcm != NULL && !options->lockstep && saddle_lcm_commands_possible(options->lcm);
+}
+
+static bool are_commands_consistent(const saddle_options_t *options)
+{
+    const bool by_lcm = options->command_from == SADDLE_SOURCE_LCM;
+    if (by_lcm && !saddle_options_lcm_commands(options)) {
+        return complain("command-from", "lcm",
+                        "can or first: commands by LCM need --clock realtime and --lcm udpm://...");
+    }
+    if (by_lcm && options->command_key != NULL) {
+        return complain("command-key", options->command_key,
+                        "--command-from can: a command by LCM cannot be authenticated");
+    }
+    if (options->lcm_from_network &&
+        (options->command_key != NULL || options->command_from == SADDLE_SOURCE_CAN ||
+         !saddle_options_lcm_commands(options))) {
+        fprintf(stderr, SADDLE_PROGRAM ": --lcm-from-network: leave it out, the other options "
+                                       "allow no commands by LCM\n");
+        return false;
+    }
+    return true;
+}
+
 static bool is_consistent(const saddle_options_t *options)
 {
     const saddle_config_t *config = &options->config;
     const char *name = saddle_config_check(config);
-    if (options->command_from == SADDLE_SOURCE_LCM && (options->lockstep || options->lcm == NULL)) {
-        return complain("command-from", "lcm",
-                        "can or first: there are no commands by LCM in lockstep or without LCM");
-    }
-    if (options->command_from == SADDLE_SOURCE_LCM && options->command_key != NULL) {
-        return complain("command-key", options->command_key,
-                        "--command-from can: a command by LCM cannot be vouched for");
+    if (!are_commands_consistent(options)) {
+        return false;
     }
     if (name != NULL) {
         fprintf(stderr, SADDLE_PROGRAM ": --set %s=%.9g: give a value that suits the others\n",
@@ -177,7 +201,7 @@ saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *
         {"clock", required_argument, NULL, 'k'}, {"ankle", required_argument, NULL, 'a'},
         {"set", required_argument, NULL, 's'},   {"command-from", required_argument, NULL, 'm'},
         {"fifo", required_argument, NULL, 'f'},  {"command-key", required_argument, NULL, 'y'},
-        {"help", no_argument, NULL, 'h'},
+        {"lcm-from-network", no_argument, NULL, 'n'}, {"help", no_argument, NULL, 'h'},
         {NULL, 0, NULL, 0}};
     *options = (saddle_options_t){
         .can = "auto",

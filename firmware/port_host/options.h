@@ -8,9 +8,10 @@
 typedef struct {
     const char *can; /**< as saddle_bus_open() takes it */
     const char *lcm; /**< an LCM URL; NULL: no LCM */
+    bool lcm_from_network; /**< commands by LCM from other machines count too */
     bool lockstep;
     saddle_source_t command_from; /**< NONE: the first that commands */
-    const char *command_key;      /**< file with the key of the codes demanded; NULL: none are */
+    const char *command_key;      /**< file with the key of the codes demanded; NULL: none is */
     int fifo_priority;            /**< 0: the ordinary scheduler */
     saddle_config_t config;
 } saddle_options_t;
@@ -23,5 +24,8 @@ typedef enum { SADDLE_OPTIONS_RUN, SADDLE_OPTIONS_HELP, SADDLE_OPTIONS_WRONG } s
  * has passed saddle_config_check(). The strings are argv's.
  */
 saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *argv[]);
+
+/** Whether commands can come by LCM: not in lockstep, and not by a URL other than `udpm://`. */
+bool saddle_options_lcm_commands(const saddle_options_t *options);
 
 #endif

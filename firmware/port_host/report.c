@@ -44,7 +44,7 @@ saddlewalk_health_t saddle_report_health(const saddle_report_t *report,
         .frames_malformed = receiver->malformed,
         .frames_not_sent = (int64_t)report->bus->no_room + report->bus->no_link,
         .commands_rejected = (int64_t)inbox->commands_unusable + inbox->commands_ignored +
-                             receiver->bad_version,
+                             inbox->commands_foreign + receiver->bad_version,
     };
 }
 
@@ -75,6 +75,7 @@ static void tell_inputs(saddlewalk_status_t *message, const saddle_inbox_t *inbo
     message->commands_obeyed = inbox->commands_obeyed;
     message->commands_unusable = inbox->commands_unusable;
     message->commands_ignored = inbox->commands_ignored;
+    message->commands_foreign = inbox->commands_foreign;
     message->frames_accepted = receiver->accepted;
     message->frames_malformed = receiver->malformed;
     message->frames_bad_crc = receiver->bad_crc;
@@ -123,11 +124,11 @@ void saddle_report_print(const saddle_report_t *report)
     printf("%" PRIu32 " ticks, %" PRIu32 " late, %" PRIu32 " missed; frames: %" PRIu32
            " accepted, rejected %" PRIu32 " bad CRC, %" PRIu32 " bad counter, %" PRIu32
            " bad version, %" PRIu32 " bad code, %" PRIu32 " malformed; commands: %" PRIu32 " obeyed, %" PRIu32
-           " unusable, %" PRIu32 " ignored; not sent: %" PRIu32 " frames without room, %" PRIu32
+           " unusable, %" PRIu32 " ignored, %" PRIu32 " from other machines; not sent: %" PRIu32 " frames without room, %" PRIu32
            " without link, %" PRIu64 " LCM messages\n",
            timing->ticks, timing->late_ticks, timing->missed_ticks, receiver->accepted,
            receiver->bad_crc, receiver->bad_counter, receiver->bad_version, receiver->bad_code,
            receiver->malformed,
            inbox->commands_obeyed, inbox->commands_unusable, inbox->commands_ignored,
-           report->bus->no_room, report->bus->no_link, report->lcm->not_sent);
+           inbox->commands_foreign, report->bus->no_room, report->bus->no_link, report->lcm->not_sent);
 }

@@ -2,6 +2,8 @@
 
 #include "announce.h"
 #include "clock.h"
+#include "lcm_commands.h"
+#include <arpa/inet.h>
 #include <string.h>
 #include <sys/random.h>
 #include <sys/select.h>
@@ -29,14 +31,39 @@ static uint64_t arrival_us(const saddle_runner_t *runner, uint32_t waited_us)
     return now_us > waited_us ? now_us - waited_us : 0;
 }
 
-/** LCM's own thread did not run either, and stamps what it then reads with the time of reading. */
-static void take_lcm_command(void *user, const saddle_command_t *command, uint32_t waited_us)
+/** Announced once: the count tells the rest. */
+static void reject_foreign_command(saddle_inbox_t *inbox, struct in_addr source)
 {
-    saddle_runner_t *runner = user;
-    const bool doubtful = saddle_now_us() < runner->doubtful_until_us;
-    const bool longer = doubtful && runner->stood_still_us > waited_us;
-    saddle_inbox_take_command(&runner->inbox, SADDLE_SOURCE_LCM, command,
-                              arrival_us(runner, longer ? runner->stood_still_us : waited_us));
+    char address[INET_ADDRSTRLEN];
+    if (inbox->commands_foreign++ == 0 &&
+        inet_ntop(AF_INET, &source, address, sizeof address) != NULL) {
+        saddle_announce("command by LCM from %s rejected: only this machine may command; "
+                        "--lcm-from-network accepts others", address);
+    }
+}
+
+static void take_lcm_command(saddle_runner_t *runner, const saddle_lcm_arrival_t *arrival,
+                             bool usable)
+{
+    saddle_inbox_take_command(&runner->inbox, SADDLE_SOURCE_LCM,
+                              usable ? &arrival->command : NULL,
+                              arrival_us(runner, arrival->waited_us));
+}
+
+/** Take what waits of LCM's commands. */
+static void take_lcm_commands(saddle_runner_t *runner)
+{
+    for (int i = 0; i < COMMANDS_AT_ONCE; ++i) {
+        saddle_lcm_arrival_t arrival;
+        switch (saddle_lcm_commands_receive(runner->lcm_commands_fd, &arrival)) {
+        case SADDLE_LCM_COMMAND: take_lcm_command(runner, &arrival, true); break;
+        case SADDLE_LCM_JUNK: take_lcm_command(runner, &arrival, false); break;
+        case SADDLE_LCM_FOREIGN:
+            reject_foreign_command(&runner->inbox, arrival.source);
+            break;
+        default: return;
+        }
+    }
 }
 
 static bool is_lockstep_due(const saddle_runner_t *runner)
@@ -154,7 +181,7 @@ static bool wait(const saddle_runner_t *runner, uint64_t until_us)
     const uint64_t left_us = until_us > now ? until_us - now : 0;
     struct timeval timeout = {.tv_sec = (time_t)(left_us / 1000000u),
                               .tv_usec = (suseconds_t)(left_us % 1000000u)};
-    const int fds[] = {runner->stop_fd, runner->bus->receive_fd, saddle_lcm_fd(runner->lcm)};
+    const int fds[] = {runner->stop_fd, runner->bus->receive_fd, runner->lcm_commands_fd};
     fd_set readable;
     int highest = 0;
     FD_ZERO(&readable);
@@ -173,11 +200,7 @@ static bool wait(const saddle_runner_t *runner, uint64_t until_us)
 static uint64_t newest_place_us(saddle_runner_t *runner, uint64_t due_us, uint64_t now_us)
 {
     const uint64_t missed = (now_us - due_us) / SADDLE_TICK_US;
-    if (missed > 0) {
-        runner->timing.missed_ticks += (uint32_t)missed;
-        runner->stood_still_us = (uint32_t)((missed + 2) * SADDLE_TICK_US);
-        runner->doubtful_until_us = now_us + SADDLE_TICK_US;
-    }
+    runner->timing.missed_ticks += (uint32_t)missed;
     return due_us + missed * SADDLE_TICK_US;
 }
 
@@ -190,7 +213,7 @@ static void run_realtime(saddle_runner_t *runner)
             due_us = newest_place_us(runner, due_us, awake_us);
         }
         take_frames(runner);
-        saddle_lcm_receive(runner->lcm, COMMANDS_AT_ONCE);
+        take_lcm_commands(runner);
         if (awake_us < due_us) {
             continue;
         }
@@ -227,12 +250,9 @@ void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, 
                         int stop_fd)
 {
     *runner = (saddle_runner_t){
-        .bus = bus, .lcm = lcm, .stop_fd = stop_fd, .lockstep = lockstep};
+        .bus = bus, .lcm = lcm, .lcm_commands_fd = -1, .stop_fd = stop_fd, .lockstep = lockstep};
     (void)saddle_init(&runner->context, config);
     saddle_inbox_init(&runner->inbox, command_from);
-    if (!lockstep) { /* in lockstep commands come by CAN, in order with the measurements */
-        saddle_lcm_subscribe(lcm, take_lcm_command, runner);
-    }
 }
 
 void saddle_runner_demand_codes(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH])

@@ -18,17 +18,18 @@
 typedef struct {
     saddle_bus_t *bus;
     saddle_lcm_port_t *lcm;
+    int lcm_commands_fd; /**< -1: LCM cannot command */
     int stop_fd; /**< readable when the loop must end */
     bool lockstep;
     saddle_context_t context;
     saddle_inbox_t inbox;
     saddle_timing_t timing;
     saddle_realtime_t realtime;
-    uint32_t stood_still_us;    /**< for how long the process did not run, the last time */
-    uint64_t doubtful_until_us; /**< what LCM brings until then may have waited all that time */
 } saddle_runner_t;
 
-/** Ready the runner. config has passed saddle_config_check(); bus and lcm are kept. */
+/** Ready the runner. config has passed saddle_config_check(); bus and lcm are kept. Commands by LCM:
+ *  set lcm_commands_fd afterwards, but not in lockstep, where commands come by CAN, in order with
+ *  the measurements. */
 void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, bool lockstep,
                         saddle_source_t command_from, saddle_bus_t *bus, saddle_lcm_port_t *lcm,
                         int stop_fd);

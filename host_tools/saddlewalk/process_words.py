@@ -1,7 +1,7 @@
 """What a status_t says about the host process, in words."""
 
 LINKS = ("unused", "up", "DOWN", "BUS-OFF")
-SOURCES = ("nobody yet", "CAN", "LCM")
+SOURCES = ("none", "CAN", "LCM")
 TRANSPORTS = ("SocketCAN", "UDP")
 REFUSED = {
     "malformed": "frames_malformed",
@@ -11,12 +11,14 @@ REFUSED = {
     "bad code": "frames_bad_code",
     "unusable commands": "commands_unusable",
     "commands of the source without authority": "commands_ignored",
+    "commands from other machines": "commands_foreign",
 }
 DROPPED = {
     "frames without room": "frames_no_room",
     "frames without link": "frames_no_link",
     "LCM messages": "messages_not_sent",
 }
+LONG_US = 10_000_000  # an age from here on is given in seconds
 USUAL = 0.99  # the share of ticks whose latency is told beside the worst
 
 
@@ -52,7 +54,7 @@ def latency_below_us(latencies, share: float) -> int | None:
 
 
 def inputs(status) -> str:
-    """Whose commands are obeyed, how old each input is, and what was refused."""
+    """Who commands, how old each input is, and what was rejected."""
     ages = (
         ("CoM", status.com_age_us),
         ("left foot", status.left_age_us),
@@ -60,14 +62,23 @@ def inputs(status) -> str:
     )
     return ", ".join(
         [
-            f"inputs: commands from {_name(SOURCES, status.command_source)} "
-            f"{_age(status, status.command_age_us)}",
+            f"inputs: {commands(status)}",
             *(f"{name} {_age(status, age_us)}" for name, age_us in ages),
             f"{status.frames_accepted} frames accepted",
             *_counts(status, REFUSED),
             *_other_version(status),
         ]
     )
+
+
+def commands(status) -> str:
+    """Who commands and since when not; after a walk has ended without commands, nobody does."""
+    age = _age(status, status.command_age_us)
+    if status.command_source != status.SOURCE_NONE:
+        return f"commands from {_name(SOURCES, status.command_source)} {age}"
+    if status.command_age_us == status.NEVER:
+        return "no commands yet"
+    return f"no commands now, the last {age}"
 
 
 def transports(status) -> str:
@@ -95,7 +106,9 @@ def _other_version(status) -> list[str]:
 
 
 def _age(status, age_us: int) -> str:
-    return "never" if age_us == status.NEVER else f"{age_us / 1000:.0f} ms ago"
+    if age_us == status.NEVER:
+        return "never"
+    return f"{age_us / 1e3:.0f} ms ago" if age_us < LONG_US else f"{age_us / 1e6:.0f} s ago"
 
 
 def _counts(status, names: dict[str, str]) -> list[str]:

@@ -136,7 +136,7 @@ def key_file(tmp_path):
 
 def test_the_host_obeys_who_has_the_key_and_counts_who_has_not(key_file):
     with Host("--lcm=none", "--clock=lockstep", "--command-key", str(key_file)) as host:
-        assert "; commands must be vouched for\n" in host.first_line
+        assert f"; commands: by CAN, authenticated with the key in {key_file}\n" in host.first_line
         voucher = Voucher(KEY)
         host.measure(STANDING)
         for frame in host.tick_frames():

@@ -85,7 +85,7 @@ def test_the_first_that_commands_is_obeyed_and_the_other_counted():
         status = until(node, "STATUS", lambda status: status.commands_ignored == 3)
         assert status.command_source == status.SOURCE_LCM
         until(node, "PLAN", lambda plan: plan.speed_m_s == pytest.approx(0.8))
-        assert "commands: 1 obeyed, 0 unusable, 3 ignored;" in host.stop()
+        assert "commands: 1 obeyed, 0 unusable, 3 ignored, " in host.stop()
 
 
 def test_the_other_may_command_once_the_first_is_silent_and_the_walk_has_ended():
@@ -263,7 +263,7 @@ def test_loopback_that_goes_down_and_comes_back():
 def test_an_lcm_route_that_is_lost_and_comes_back():
     url = own_lcm()
     with Host("--lcm", url, COMMAND_HOLDS) as host:
-        assert f"LCM {url} on loopback;" in host.first_line
+        assert f"LCM {url} on this machine;" in host.first_line
         node = LcmNode(url)
         node.take()
         unroute()
@@ -363,5 +363,6 @@ def test_an_interface_that_is_named_is_said_to_leave_this_machine():
     bring_up("d0")
     with Host("--lcm=none", spec=f"{spec}@d0") as host:
         assert describe(host.bus) == f"UDP {spec[4:]} on d0: leaves this machine"
-        assert f"CAN UDP {spec[4:]}@d0, which leaves this machine: " in host.first_line
+        assert f"CAN UDP {spec[4:]}@d0, which leaves this machine; " in host.first_line
+        assert "; commands: anyone on the network (CAN over UDP); " in host.first_line
         assert len(host.tick()) == 21

@@ -219,6 +219,21 @@ def test_what_was_refused_is_told_by_cause():
     assert "900 frames accepted, 5 bad version, wire" in process_words.inputs(status())
 
 
+def test_who_commanded_before_is_not_said_to_command_now():
+    """Authority ends with the walk that nobody commands any more."""
+    message = status()
+    message.command_source, message.command_age_us = status_t.SOURCE_NONE, 377_548_000
+    assert process_words.inputs(message).startswith("inputs: no commands now, the last 378 s ago, ")
+    message.command_age_us = status_t.NEVER
+    assert process_words.inputs(message).startswith("inputs: no commands yet, ")
+
+
+def test_commands_from_other_machines_are_told():
+    message = status()
+    message.commands_foreign = 20
+    assert "20 commands from other machines" in process_words.inputs(message)
+
+
 def test_a_process_without_troubles_has_none_told():
     message = status_t()
     message.can_link = message.lcm_link = status_t.LINK_UP
@@ -240,7 +255,7 @@ def test_codes_of_other_firmware_are_given_by_number():
     ("kind", "names"),
     [
         ("LINK", process_words.LINKS),
-        ("SOURCE", ("none", *process_words.SOURCES[1:])),
+        ("SOURCE", process_words.SOURCES),
         ("TRANSPORT", process_words.TRANSPORTS),
     ],
 )
