@@ -3,88 +3,33 @@ laboratories' files, missing markers, nonsense; the TOML and the C header that c
 
 import argparse
 import dataclasses
-import functools
 import math
 import os
 import shutil
 import subprocess
 import tomllib
 
-import ezc3d
 import numpy as np
 import pytest
 
+from laboratory import LABORATORIES, PERSON, WRITERS, c3d_file, laboratory, trc_file, walk_of
 from saddlewalk.cli import main, parser
-from saddlewalk.config import ANKLES, configuration, host_arguments, load_config
-from saddlewalk.core import Core, field_ranges
+from saddlewalk.config import configuration, host_arguments, load_config
+from saddlewalk.core import field_ranges
 from saddlewalk.errors import UserError
 from saddlewalk.gait.measures import measure
 from saddlewalk.gait.motion_capture import load_walk
 from saddlewalk.gait.recording import Recording
 from saddlewalk.paths import CHECKOUT, built
-from saddlewalk.planning.steady import walk as planned
 from saddlewalk.table import read_table
 from synthetic_walk import Walk, csv_text
 
-PERSON = {
-    "body_height_m": 1.62,
-    "body_mass_kg": 55.0,
-    "cop_range_m": 0.085,
-    "step_width_slow_m": 0.162,
-    "step_width_fast_m": 0.114,
-    "step_width_slow_speed_m_s": 0.7,
-    "step_width_fast_speed_m_s": 1.3,
-    "step_width_slope_s": -0.08,
-    "step_width_intercept_m": 0.218,
-    "half_step_slope_s": 0.15,
-    "half_step_intercept_m": 0.13,
-    "vertical_slope_s": 0.03,
-    "vertical_intercept_m": 0.004,
-    "lateral_factor": 0.8,
-    "step_length_factor_left": 1.04,
-    "step_length_factor_right": 0.96,
-}
 SPEEDS_M_S = (0.7, 1.0, 1.3)
-RATE_HZ = 200
 
 TRIALS = CHECKOUT.parent / "shared/data/gait"
 
 # What is left: one step more of the longer side in a walk; an uneven walk sways by no pure cosine.
 TOLERANCE = {"half_step_slope_s": 2e-3, "half_step_intercept_m": 2e-3, "lateral_factor": 4e-3}
-
-# Laboratory axes as rows of forward, left and up: x sideways and z up, or y up.
-LABORATORIES = {
-    "z up, walking along -y": ((0, -1, 0), (1, 0, 0), (0, 0, 1)),
-    "y up, walking along x": ((1, 0, 0), (0, 0, -1), (0, 1, 0)),
-}
-
-
-def walk_of(fields: dict[str, float], speed_m_s: float, duration_s: float = 9.0) -> Recording:
-    """The core's walk as if it had been recorded: heel and toe d_h behind and ahead of the CoP."""
-    return recorded(tuple(fields.items()), speed_m_s, duration_s)
-
-
-@functools.cache
-def recorded(fields: tuple, speed_m_s: float, duration_s: float) -> Recording:
-    config = configuration({**dict(fields), "ankle": ANKLES["cycloid"]})
-    com_m, foot_m = [], ([], [])
-    for _, (time_s, output) in zip(
-        range(round(duration_s * RATE_HZ)),
-        planned(Core(config), speed_m_s, 10, 1 / RATE_HZ),
-        strict=False,
-    ):
-        plan, origin_m = output.plan, output.plan.origin_x_nm * 1e-9
-        com_m.append((time_s, origin_m + plan.com_m.x, plan.com_m.y, plan.com_m.z))
-        for side, foot in enumerate(plan.foot_m):
-            foot_m[side].append((origin_m + foot.x, foot.y, foot.z))
-    half_foot_m = np.array([config.cop_range_m, 0, 0])
-    return Recording(
-        source=f"{speed_m_s} m/s",
-        time_s=np.array(com_m)[:, 0],
-        com_m=np.array(com_m)[:, 1:],
-        heel_m=np.array(foot_m) - half_foot_m,
-        toe_m=np.array(foot_m) + half_foot_m,
-    )
 
 
 @pytest.fixture
@@ -187,56 +132,6 @@ def test_sway_is_fitted_beside_drift_and_offset():
     drift_m = 0.3 + 0.02 * walk.time_s
     moved = dataclasses.replace(walk, com_m=walk.com_m + np.outer(drift_m, (0, 1, 0)))
     assert measure(moved).lateral_m == pytest.approx(0.1328 / (2 * math.pi), abs=2e-4)
-
-
-def laboratory(recording: Recording, rows: tuple, belt_m_s: float = 0.0) -> dict[str, np.ndarray]:
-    """Plug-in Gait markers, (n, 3) in mm and the laboratory's axes."""
-    back_m = np.outer(belt_m_s * recording.time_s, (1, 0, 0))
-    aside_m, ahead_m = np.array([0, 0.12, 0]), np.array([0.09, 0, 0])
-    points_m = {
-        "Ann:LASI": recording.com_m + ahead_m + aside_m,
-        "Ann:RASI": recording.com_m + ahead_m - aside_m,
-        "Ann:LPSI": recording.com_m - ahead_m + aside_m / 2,
-        "Ann:RPSI": recording.com_m - ahead_m - aside_m / 2,
-        "Ann:LHEE": recording.heel_m[0],
-        "Ann:RHEE": recording.heel_m[1],
-        "Ann:LTOE": recording.toe_m[0],
-        "Ann:RTOE": recording.toe_m[1],
-    }
-    return {name: 1e3 * (xyz_m - back_m) @ np.array(rows) for name, xyz_m in points_m.items()}
-
-
-def c3d_file(path, markers: dict[str, np.ndarray]) -> str:
-    trial = ezc3d.c3d()
-    point = trial["parameters"]["POINT"]
-    point["RATE"]["value"] = [float(RATE_HZ)]
-    point["UNITS"]["value"] = ["mm"]
-    point["LABELS"]["value"] = list(markers)
-    points = np.stack(list(markers.values()), axis=0).transpose(2, 0, 1)
-    trial["data"]["points"] = np.concatenate([points, np.ones((1, *points.shape[1:]))])
-    trial.write(str(path))
-    return str(path)
-
-
-def trc_file(path, markers: dict[str, np.ndarray]) -> str:
-    table = np.concatenate(list(markers.values()), axis=1)
-    frames = [
-        "\t".join([str(i + 1), f"{i / RATE_HZ:.4f}", *("" if x != x else f"{x:.5f}" for x in row)])
-        for i, row in enumerate(table)
-    ]
-    head = [
-        f"PathFileType\t4\t(X/Y/Z)\t{path.name}",
-        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate",
-        f"{RATE_HZ}\t{RATE_HZ}\t{len(table)}\t{len(markers)}\tmm\t{RATE_HZ}",
-        "Frame#\tTime\t" + "\t\t\t".join(markers),
-        "\t\t" + "\t".join(f"{axis}{i + 1}" for i in range(len(markers)) for axis in "XYZ"),
-        "",
-    ]
-    path.write_text("\n".join([*head, *frames, ""]))
-    return str(path)
-
-
-WRITERS = {"c3d": c3d_file, "trc": trc_file}
 
 
 @pytest.mark.parametrize("kind", WRITERS)
@@ -439,9 +334,9 @@ def test_c3d_without_ezc3d_says_what_to_install(monkeypatch, tmp_path, capsys):
 def test_c3d_reader_that_crashes_is_an_error_of_the_file(monkeypatch, tmp_path, capsys):
     (tmp_path / "ezc3d.py").write_text("import os\nos.abort()\n")
     monkeypatch.syspath_prepend(tmp_path)
-    path = tmp_path / "walk.c3d"
-    path.touch()
-    assert "walk.c3d: not a C3D file: ezc3d crashed" in refusal(capsys, "calibrate", str(path))
+    markers = laboratory(walk_of(PERSON, 1.0, 2.0), LABORATORIES["z up, walking along -y"])
+    path = c3d_file(tmp_path / "walk.c3d", markers)
+    assert "walk.c3d: not a C3D file: ezc3d crashed" in refusal(capsys, "calibrate", path)
 
 
 @pytest.fixture

@@ -4,46 +4,53 @@ CoM and CoP are the paper's: the CoM midway between the centres of the front and
 markers, a foot's CoP midway between the heel and the middle of the metatarsus.
 """
 
-import importlib.util
 import math
-import multiprocessing
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from saddlewalk.errors import UserError
+from saddlewalk.gait.c3d_file import read_c3d
+from saddlewalk.gait.capture import METRES, Capture
+from saddlewalk.gait.gaps import fill_gaps
 from saddlewalk.gait.recording import ABSURD_M, Recording, load_recording
-from saddlewalk.paths import install_command
+from saddlewalk.gait.trc_file import read_trc
 from saddlewalk.toml_file import read_toml
 
 POINTS = ("front", "rear", "left_heel", "left_toe", "right_heel", "right_toe")
 MAY_BE_MISSING = ("left_toe", "right_toe")
-METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
+READERS = {".c3d": read_c3d, ".trc": read_trc}
 
 # Plug-in Gait first, then the usual names of the same places. "l" and "r" are the sides.
-ILIAC = {"front": ("asi", "asis", "ias"), "rear": ("psi", "psis", "ips")}
-SACRUM = ("sacr", "sacrum", "vsac", "vsacral")
-HEEL = ("hee", "heel", "fcc", "cal", "calc")
-METATARSUS = (("toe",), ("mt1", "mt5"), ("fm1", "fm5"), ("mt2", "mt5"), ("toelat", "toemed"))
+ILIAC = {
+    "front": ("asi", "asis", "ias", "sias", "fwt"),
+    "rear": ("psi", "psis", "ips", "sips", "bwt"),
+}
+SACRUM = ("sacr", "sacrum", "vsac", "vsacral", "sacral")
+HEEL = (
+    *((name,) for name in ("hee", "heel", "fcc", "cal", "calc", "calcaneus")),
+    *((f"{name}med", f"{name}lat") for name in ("heel", "hee", "calc", "cal")),
+)
+METATARSUS = (
+    ("toe",),
+    *((f"{bone}{inner}", f"{bone}5") for bone in ("mt", "fm", "mth", "met") for inner in "12"),
+    *((f"{inner}{bone}", f"5{bone}") for bone in ("mt", "mth", "met", "meta") for inner in "12"),
+    ("d1mt", "d5mt"),
+    ("toelat", "toemed"),
+    *((f"{bone}2",) for bone in ("mt", "fm", "mth", "met")),
+)
+
+SIDE_FIRST = re.compile(r"(?P<side>left|right)(?P<place>.+)")
+SIDE_LAST = re.compile(r"(?![lr][._ -])(?P<place>.+)[._ -](?P<side>l|r|left|right)")
 
 WALKED_M = 1.0  # who went less far walked on a treadmill, or not at all
 BELT_WINDOW_S = 0.1
 SLOWEST_BELT_M_S = 0.1
+PELVIS_M = (0.25, 1.5)  # above the heels, from a child of two to the tallest adult
 
 Markers = Mapping[str, Sequence[str]]  # point of POINTS -> markers whose mean it is
-
-
-@dataclass(frozen=True)
-class Capture:
-    """Markers in the axes of the laboratory, metres; NaN: not seen."""
-
-    time_s: np.ndarray  # (n,)
-    marker_m: dict[str, np.ndarray]  # name -> (n, 3)
 
 
 def load_walk(source: str, markers: Markers | None = None) -> Recording:
@@ -51,13 +58,20 @@ def load_walk(source: str, markers: Markers | None = None) -> Recording:
 
     Raises UserError naming the file and what is wrong in it.
     """
-    read = {".c3d": _read_c3d, ".trc": _read_trc}.get(Path(source).suffix.lower())
+    read = READERS.get(Path(source).suffix.lower())
     if read is None:
         return load_recording(source)
     capture = read(Path(source))
     if len(capture.time_s) < 2:
         raise UserError(f"{source}: {len(capture.time_s)} frames; a trial needs at least 2")
-    return _in_task_frame(source, capture.time_s, _points(source, capture, markers or {}))
+    points, filled = _points(source, capture, markers or {})
+    unit = capture.unit or _likely_unit(source, points)
+    notes = [
+        f"no unit in the file, {unit} assumed" if not capture.unit else "",
+        f"{filled} short gaps filled" if filled else "",
+    ]
+    points_m = {name: _sane(xyz * METRES[unit]) for name, xyz in points.items()}
+    return _in_task_frame(source, capture.time_s, points_m, notes)
 
 
 def read_markers(path: Path) -> Markers:
@@ -71,21 +85,53 @@ def read_markers(path: Path) -> Markers:
     return mapping
 
 
-def _points(source: str, capture: Capture, markers: Markers) -> dict[str, np.ndarray]:
-    """(n, 3) of each point of POINTS; NaN for one that may be missing and is."""
-    by_name = {_plain(name): xyz_m for name, xyz_m in capture.marker_m.items()}
-    points = {}
+def _points(source: str, capture: Capture, markers: Markers) -> tuple[dict[str, np.ndarray], int]:
+    """(n, 3) of each point of POINTS, NaN for one that may be missing and is; gaps filled."""
+    by_name: dict[str, list[str]] = {}
+    for name in capture.markers:
+        for key in {_plain(name), _full(name)}:
+            by_name.setdefault(key, []).append(name)
+    points, filled = {}, {}
     for point in POINTS:
-        asked = [tuple(markers[point])] if point in markers else list(_usual_names(point))
-        found = next((names for names in asked if all(_plain(n) in by_name for n in names)), None)
-        if found is not None:
-            points[point] = np.mean([by_name[_plain(name)] for name in found], axis=0)
-        elif point in markers or point not in MAY_BE_MISSING:
-            wanted = " or ".join(" and ".join(names) for names in asked)
-            raise UserError(f"{source}: no markers for {point}: {wanted} (see --markers)")
-        else:
-            points[point] = np.full((len(capture.time_s), 3), np.nan)
-    return points
+        names = _choose(source, point, capture, markers, by_name)
+        for name in names:
+            filled.setdefault(name, fill_gaps(capture.time_s, capture.markers[name]))
+        points[point] = (
+            np.mean([filled[name][0] for name in names], axis=0)
+            if names
+            else np.full((len(capture.time_s), 3), np.nan)
+        )
+    return points, sum(count for _, count in filled.values())
+
+
+def _choose(
+    source: str, point: str, capture: Capture, markers: Markers, by_name: Mapping[str, list[str]]
+) -> list[str]:
+    """Names in the file of the markers whose mean is the point; none if it may be missing."""
+    given = point in markers
+    asked = [tuple(markers[point])] if given else list(_usual_names(point))
+    there = [
+        [by_name[_full(name) if given else name] for name in names]
+        for names in asked
+        if all((_full(name) if given else name) in by_name for name in names)
+    ]
+    if not there:
+        if point in MAY_BE_MISSING and not given:
+            return []
+        wanted = " or ".join(" and ".join(names) for names in asked)
+        raise UserError(f"{source}: no markers for {point}: {wanted} (see --markers)")
+    seen = [
+        found
+        for found in there
+        if all(np.isfinite(capture.markers[names[0]]).any() for names in found)
+    ]
+    chosen = (seen or there)[0]
+    for names in chosen:
+        if len(names) > 1:
+            raise UserError(
+                f"{source}: {' and '.join(names)} may each be {point}: name one in --markers"
+            )
+    return [names[0] for names in chosen]
 
 
 def _usual_names(point: str) -> Iterator[tuple[str, ...]]:
@@ -95,16 +141,43 @@ def _usual_names(point: str) -> Iterator[tuple[str, ...]]:
             yield from ((name,) for name in SACRUM)
         return
     side, place = point[0], point.partition("_")[2]
-    groups = [(name,) for name in HEEL] if place == "heel" else METATARSUS
+    groups = HEEL if place == "heel" else METATARSUS
     yield from (tuple(side + name for name in group) for group in groups)
 
 
+def _full(name: str) -> str:
+    """A marker's name without case or punctuation: Ann:L.ASIS -> annlasis."""
+    return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
 def _plain(name: str) -> str:
-    """A marker's name without the subject before it, case or punctuation: Ann:L.ASIS -> lasis."""
-    return re.sub(r"[^a-z0-9]", "", name.rpartition(":")[2].lower())
+    """One without the subject before it either, its side in front: Ann:Heel_Left -> lheel."""
+    words = name.rpartition(":")[2].lower().removesuffix("_study")  # of OpenCap
+    for pattern in (SIDE_FIRST, SIDE_LAST):
+        if match := pattern.fullmatch(words):
+            return match["side"][0] + _full(match["place"])
+    return _full(words)
 
 
-def _in_task_frame(source: str, time_s: np.ndarray, points: dict[str, np.ndarray]) -> Recording:
+def _likely_unit(source: str, points: dict[str, np.ndarray]) -> str:
+    """The unit in which the pelvis is as high above the heels as a person's."""
+    pelvis = (points["front"] + points["rear"]) / 2
+    above = np.concatenate([pelvis - points[f"{side}_heel"] for side in ("left", "right")])
+    above = above[np.isfinite(above).all(axis=1)]
+    height = float(np.abs(np.median(above, axis=0)).max()) if len(above) else math.nan
+    low_m, high_m = PELVIS_M
+    for unit, metres in METRES.items():
+        if low_m <= height * metres <= high_m:
+            return unit
+    raise UserError(
+        f"{source}: no unit in the file, and none fits: the pelvis is {height:.4g} above the "
+        f"heels; {low_m:g} to {high_m:g} m in one of {', '.join(METRES)}"
+    )
+
+
+def _in_task_frame(
+    source: str, time_s: np.ndarray, points: dict[str, np.ndarray], notes: Sequence[str]
+) -> Recording:
     com_m = (points["front"] + points["rear"]) / 2
     heel_m = np.stack([points["left_heel"], points["right_heel"]])
     toe_m = np.stack([points["left_toe"], points["right_toe"]])
@@ -116,9 +189,9 @@ def _in_task_frame(source: str, time_s: np.ndarray, points: dict[str, np.ndarray
     origin_m = com_m[np.isfinite(com_m).all(axis=1)][0] * (1, 1, 0)
     belt_m_s = _belt_speed(time_s, heel_m[..., 0])
     way_m = np.stack([belt_m_s * (time_s - time_s[0]), 0 * time_s, 0 * time_s], axis=1) - origin_m
-    treadmill = f", treadmill at {belt_m_s:.3g} m/s" if belt_m_s else ""
+    treadmill = f"treadmill at {belt_m_s:.3g} m/s" if belt_m_s else ""
     return Recording(
-        source=Path(source).name + treadmill,
+        source=", ".join(filter(None, (Path(source).name, treadmill, *notes))),
         time_s=time_s,
         com_m=com_m + way_m,
         heel_m=heel_m + way_m,
@@ -160,91 +233,6 @@ def _belt_speed(time_s: np.ndarray, heel_x_m: np.ndarray) -> float:
     both = back_m_s[:, np.isfinite(back_m_s).all(axis=0)]
     speed_m_s = float(np.median(both.max(axis=0))) if both.size else 0.0
     return speed_m_s if speed_m_s > SLOWEST_BELT_M_S else 0.0
-
-
-def _read_c3d(path: Path) -> Capture:
-    """In a process of its own: ezc3d may crash on a damaged file, and takes its process along."""
-    if importlib.util.find_spec("ezc3d") is None:
-        raise UserError(f"{path}: C3D needs ezc3d: {install_command('c3d')}")
-    if not path.is_file():
-        raise UserError(f"{path}: no such file")
-    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as reader:
-        try:
-            return reader.submit(_parse_c3d, path).result()
-        except BrokenProcessPool as error:
-            raise UserError(f"{path}: not a C3D file: ezc3d crashed on it") from error
-
-
-def _parse_c3d(path: Path) -> Capture:
-    import ezc3d
-
-    try:
-        trial = ezc3d.c3d(str(path))
-        point = trial["parameters"]["POINT"]
-        names = [name for key in _label_keys(point) for name in point[key]["value"]]
-        rate_hz = float(point["RATE"]["value"][0])
-        unit = point["UNITS"]["value"][0]
-        points = trial["data"]["points"][:3]
-        unseen = trial["data"]["meta_points"]["residuals"][0] < 0
-    except (OSError, RuntimeError, ValueError, KeyError, IndexError, MemoryError) as error:
-        raise UserError(f"{path}: not a C3D file with markers: {error}") from error
-    if not 1 <= rate_hz < math.inf:
-        raise UserError(f"{path}: POINT:RATE {rate_hz:g} must be a rate in Hz")
-    points_m = np.where(unseen | ~points.any(axis=0), np.nan, points) * _metres(path, unit)
-    return Capture(
-        time_s=np.arange(points.shape[2]) / rate_hz,
-        marker_m={name: _sane(points_m[:, i].T) for i, name in enumerate(names[: points.shape[1]])},
-    )
-
-
-def _label_keys(point: Mapping) -> list[str]:
-    """LABELS holds 255 names, LABELS2 and so on further ones."""
-    return sorted(
-        (key for key in point if re.fullmatch(r"LABELS\d*", key)), key=lambda k: (len(k), k)
-    )
-
-
-def _read_trc(path: Path) -> Capture:
-    """Tab-separated text: three header lines, one of marker names, one of axes, then frames."""
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except OSError as error:
-        raise UserError(f"{path}: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise UserError(f"{path}: not TRC: {error}") from error
-    if len(lines) < 6 or not lines[0].startswith("PathFileType"):
-        raise UserError(f"{path}: not TRC: the first line must begin with PathFileType")
-    header = dict(zip(lines[1].split(), lines[2].split(), strict=False))
-    if "Units" not in header:
-        raise UserError(f"{path}: not TRC: no Units in line 2")
-    names = [name for name in lines[3].rstrip().split("\t")[2:] if name.strip()]
-    rows = np.array(
-        [_trc_row(path, i, line, len(names)) for i, line in enumerate(lines[5:], 6) if line.strip()]
-    ).reshape(-1, 1 + 3 * len(names))
-    backwards = np.flatnonzero(~(np.diff(rows[:, 0]) > 0))
-    if len(backwards):
-        raise UserError(f"{path}: frame {backwards[0] + 2}: the time must be later than before")
-    xyz_m = rows[:, 1:].reshape(len(rows), len(names), 3) * _metres(path, header["Units"])
-    return Capture(rows[:, 0], {name: _sane(xyz_m[:, i]) for i, name in enumerate(names)})
-
-
-def _trc_row(path: Path, line: int, text: str, markers: int) -> list[float]:
-    """Time and coordinates; an empty cell is a marker that was not seen."""
-    cells = text.split("\t")[1:]
-    cells += [""] * (1 + 3 * markers - len(cells))
-    try:
-        row = [float(cell) if cell.strip() else math.nan for cell in cells[: 1 + 3 * markers]]
-    except ValueError as error:
-        raise UserError(f"{path}: line {line}: {error}") from None
-    if not math.isfinite(row[0]):
-        raise UserError(f"{path}: line {line}: the time must be a number of seconds")
-    return row
-
-
-def _metres(path: Path, unit: str) -> float:
-    if unit.strip().lower() not in METRES:
-        raise UserError(f"{path}: unit {unit!r} must be one of {', '.join(METRES)}")
-    return METRES[unit.strip().lower()]
 
 
 def _sane(xyz_m: np.ndarray) -> np.ndarray:

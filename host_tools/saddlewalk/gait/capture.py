@@ -1,0 +1,31 @@
+"""Marker positions as a laboratory's file holds them, before anybody knows which marker is what."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from saddlewalk.errors import UserError
+
+METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
+UNIT_WORDS = {"met": "m", "cent": "cm", "mil": "mm"}  # beginnings: a C3D text may be cut to four
+
+
+@dataclass(frozen=True)
+class Capture:
+    """Markers in the axes and the unit of the laboratory; NaN: not seen."""
+
+    time_s: np.ndarray  # (n,)
+    markers: dict[str, np.ndarray]  # name -> (n, 3)
+    unit: str  # of METRES; empty: the file does not say
+
+
+def unit_of(path: Path, text: str) -> str:
+    """A key of METRES. Raises UserError for a text that is none."""
+    plain = text.strip().strip("\0").lower()
+    if plain in METRES:
+        return plain
+    for beginning, unit in UNIT_WORDS.items():
+        if plain.startswith(beginning):
+            return unit
+    raise UserError(f"{path}: unit {text!r} must be one of {', '.join(METRES)}")
