@@ -10,6 +10,7 @@ from typing import NoReturn
 
 from saddlewalk import __version__, commands
 from saddlewalk.errors import UserError
+from saddlewalk.outputs import check_files
 from saddlewalk.paths import need_checkout
 
 
@@ -29,6 +30,8 @@ def parser() -> argparse.ArgumentParser:
     subparsers = root.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for module in pkgutil.iter_modules(commands.__path__):
         importlib.import_module(f"saddlewalk.commands.{module.name}").add_parser(subparsers)
+        command = subparsers.choices[module.name]
+        command.set_defaults(parser=command)
     return root
 
 
@@ -52,6 +55,7 @@ def main(argv: list[str] | None = None) -> int:
         if sys.stdout is None:
             raise UserError("standard output is closed: give one, such as /dev/null")
         need_checkout()
+        check_files(args.parser, args)
         status = args.run(args)
         sys.stdout.flush()
         return status

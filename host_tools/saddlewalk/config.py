@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from saddlewalk.errors import UserError
+from saddlewalk.outputs import add_input
 from saddlewalk.toml_file import read_toml
 
 DEFAULT_HEIGHT_M = 1.79
@@ -19,8 +20,12 @@ def add_body_options(parser: argparse.ArgumentParser) -> None:
     """--height, --mass, --config: what every command that runs the core takes."""
     parser.add_argument("--height", type=float, metavar="M", help="body height, m (default 1.79)")
     parser.add_argument("--mass", type=float, metavar="KG", help="body mass, kg (default 63.3)")
-    parser.add_argument(
-        "--config", type=Path, metavar="FILE", help="TOML file with fields of saddle_config_t"
+    add_input(
+        parser,
+        "--config",
+        type=Path,
+        metavar="FILE",
+        help="TOML file with fields of saddle_config_t",
     )
 
 

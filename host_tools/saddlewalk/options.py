@@ -5,6 +5,8 @@ import math
 import os
 from collections.abc import Callable
 
+from saddlewalk.outputs import add_input
+
 
 def number_in(low: float, high: float, unit: str = "") -> Callable[[str], float]:
     """An argparse type: a finite number in [low, high]."""
@@ -44,7 +46,8 @@ def add_gait_options(parser: argparse.ArgumentParser, default_pace: str | None =
     default = "" if default_pace is None else f" (default {default_pace})"
     pace = parser.add_mutually_exclusive_group(required=default_pace is None)
     pace.add_argument("--speed", type=speed, metavar="M/S", help="walking speed" + default)
-    pace.add_argument(
+    add_input(
+        pace,
         "--schedule",
         metavar="FILE",
         help="CSV with the columns t_s (from 0, increasing) and speed_m_s (0: stand)",
@@ -78,13 +81,15 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
 
 def add_recordings(parser: argparse.ArgumentParser) -> None:
     """RECORDING... and --markers, for load_walk()."""
-    parser.add_argument(
+    add_input(
+        parser,
         "recordings",
         nargs="+",
         metavar="RECORDING",
         help="a steady walk: .c3d, .trc, or CSV with t, com_x ... rtoe_z in s and m",
     )
-    parser.add_argument(
+    add_input(
+        parser,
         "--markers",
         metavar="FILE",
         help="TOML with the markers of front, rear, left_heel, left_toe, right_heel, right_toe "

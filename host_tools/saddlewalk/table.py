@@ -4,13 +4,12 @@ import contextlib
 import csv
 import itertools
 import math
-import os
 import sys
-import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import IO, TextIO
+from typing import TextIO
 
+from saddlewalk.atomic_write import whole_file
 from saddlewalk.errors import UserError
 
 RESOLUTION_S = 0.5e-6  # the firmware counts microseconds
@@ -25,51 +24,9 @@ def format_cell(value: Cell) -> str:
 
 
 def write_table(out: str | None, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    """Write CSV to the file `out`, whole or not at all; None or "-": stream to standard output.
-
-    What is no ordinary file, as a device or a pipe, is written to and not replaced.
-    """
-    if out is None or out == "-":
-        _write_rows(sys.stdout, columns, rows)
-        return
-    try:
-        with whole_file(Path(out)) as file:
-            _write_rows(file, columns, rows)
-    except OSError as error:
-        raise UserError(f"--out {out}: {error.strerror}") from error
-
-
-def write_text(option: str, out: str, text: str) -> None:
-    """Write to the file `out`, whole or not at all; "-": to standard output."""
-    if out == "-":
-        sys.stdout.write(text)
-        return
-    try:
-        with whole_file(Path(out)) as file:
-            file.write(text)
-    except OSError as error:
-        raise UserError(f"{option} {out}: {error.strerror}") from error
-
-
-@contextlib.contextmanager
-def whole_file(path: Path, mode: str = "w") -> Iterator[IO]:
-    """A file that is at `path` once all is written. What is no ordinary file is written to."""
-    newline = None if "b" in mode else ""
-    if path.exists() and not path.is_file():
-        with path.open(mode, newline=newline) as file:
-            yield file
-        return
-    path = path.resolve()  # a link stays one
-    descriptor, partial = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(descriptor, mode, newline=newline) as file:
-            yield file
-        mask = os.umask(0)
-        os.umask(mask)
-        Path(partial).chmod(0o666 & ~mask)
-        Path(partial).replace(path)
-    finally:
-        Path(partial).unlink(missing_ok=True)
+    """Write CSV to the file `out`, whole or not at all; None or "-": stream to standard output."""
+    with whole_file("--out", out or "-") as file:
+        _write_rows(file, columns, rows)
 
 
 def _write_rows(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:

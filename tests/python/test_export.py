@@ -200,5 +200,6 @@ def test_where_it_cannot_be_written_is_one_line(walk, tmp_path, capsys):
     file, deep = str(tmp_path / "file"), str(tmp_path / "no" / "where.mcap")
     assert f"--out {file}" in refused([log, "--format", "csv", "--out", file], capsys)
     assert f"--out {deep}" in refused([log, "--format", "mcap", "--out", deep], capsys)
-    assert "is the log itself" in refused([log, "--format", "mcap", "--out", log], capsys)
+    told = refused([log, "--format", "mcap", "--out", log], capsys)
+    assert f"is the same file as LOG {log}" in told
     assert [path.name for path in tmp_path.iterdir()] == ["file"]

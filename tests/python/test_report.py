@@ -388,6 +388,6 @@ def test_where_it_is_written(walk, tmp_path, unseen, capsys):
     deep, missing = str(tmp_path / "no" / "where.html"), str(tmp_path / "none")
     assert f"--out {deep}" in refused([str(log), "--out", deep], capsys)
     assert f"--out {tmp_path}" in refused([str(log), "--out", str(tmp_path)], capsys)
-    assert "is the log itself" in refused([str(log), "--out", str(log)], capsys)
+    assert f"is the same file as LOG {log}" in refused([str(log), "--out", str(log)], capsys)
     assert f"{missing}: No such file" in refused([missing], capsys)
     assert {path.name for path in tmp_path.iterdir()} == {"a.lcmlog", "a.lcmlog.html"}

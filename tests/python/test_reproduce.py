@@ -288,7 +288,7 @@ def test_a_folder_that_cannot_be_written_is_named(monkeypatch, tmp_path, capsys)
     monkeypatch.setattr(figures, "draw_all", lambda simulations, trials: [])
     (tmp_path / "file").write_text("")
     assert main(["reproduce", "--out", str(tmp_path / "file")]) == 2
-    assert capsys.readouterr().err.endswith(f"--out {tmp_path}/file: File exists\n")
+    assert f"--out {tmp_path}/file" in capsys.readouterr().err
 
 
 def test_table_cells_stay_cells():

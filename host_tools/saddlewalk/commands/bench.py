@@ -4,6 +4,7 @@ import argparse
 from typing import Any
 
 from saddlewalk.options import whole_number_in
+from saddlewalk.outputs import add_output
 
 
 def add_parser(subparsers: Any) -> None:
@@ -22,18 +23,18 @@ def add_parser(subparsers: Any) -> None:
         metavar="N",
         help="how often each plan is made, in turns (default 50)",
     )
-    parser.add_argument("--json", metavar="FILE", help="the same as JSON; - for standard output")
+    add_output(parser, "--json", metavar="FILE", help="the same as JSON; - for standard output")
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     import json
 
+    from saddlewalk.atomic_write import write_text
     from saddlewalk.benchmark import instructions
     from saddlewalk.benchmark import report as bench_report
     from saddlewalk.benchmark.neighbours import MissingError
     from saddlewalk.benchmark.timing import measure
-    from saddlewalk.table import write_text
 
     timings = measure(args.rounds)
     try:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.errors import UserError
 from saddlewalk.options import add_recordings, number_in
+from saddlewalk.outputs import add_output
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,24 +35,25 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--mass", type=number_in(5, 300, "kg"), metavar="KG", help="body mass, kg (default 63.3)"
     )
-    parser.add_argument(
+    add_output(
+        parser,
         "--out",
         default="-",
         metavar="FILE",
         help="the gait model as TOML, for --config (default: standard output)",
     )
-    parser.add_argument("--header", metavar="FILE", help="the same as a C header, for firmware")
+    add_output(parser, "--header", metavar="FILE", help="the same as a C header, for firmware")
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
+    from saddlewalk.atomic_write import write_text
     from saddlewalk.gait.calibration import calibrate, checked
     from saddlewalk.gait.measures import measure
     from saddlewalk.gait.motion_capture import load_walk, read_markers
     from saddlewalk.gait.person_file import header_text, toml_text
-    from saddlewalk.table import write_text
 
     markers = read_markers(Path(args.markers)) if args.markers else {}
     for source in args.recordings:

@@ -18,8 +18,11 @@ from saddlewalk.commands.emulate import (
 )
 from saddlewalk.config import host_arguments, load_config
 from saddlewalk.errors import UserError
+from saddlewalk.logs.run_files import CAN_LOG, LCM_LOG, PICTURE, TABLE, run_names
+from saddlewalk.outputs import OutputFolder, add_output
 
 if TYPE_CHECKING:
+    from saddlewalk.atomic_write import RunFolder
     from saddlewalk.emulation.exoskeleton import Exoskeleton
     from saddlewalk.emulation.wearer import Wearer
     from saddlewalk.logs.recorder import Recorder
@@ -40,8 +43,10 @@ HOST, EMULATED = "host", "qemu-m4"
 
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser("demo", help="firmware and wearer walk; picture and logs")
-    parser.add_argument(
+    add_output(
+        parser,
         "--out",
+        output=lambda _: OutputFolder(run_names()),
         type=Path,
         default=Path("out/demo"),
         metavar="FOLDER",
@@ -69,24 +74,30 @@ def run(args: argparse.Namespace) -> int:
         args.push = [(PUSH_N_S_KG * config.body_mass_kg, PUSH_TIME_S, PUSH_DIRECTION_DEG)]
     args.clock = _clock(args)
     lcm = _open_lcm(args.lcm)
+    from saddlewalk.atomic_write import RunFolder
     from saddlewalk.emulation.exoskeleton import Exoskeleton
     from saddlewalk.emulation.wearer import Noise
+    from saddlewalk.pictures.walk import draw_walk
     from saddlewalk.planning.schedule import schedule_of
     from saddlewalk.transport.bus import describe
 
     wearer = wearer_of(args, config, Noise())
     schedule = schedule_of(speeds_of(args, SPEEDS), math.radians(args.hs_angle))
     firmware = _host if args.firmware == HOST else _controller
-    with firmware(args, config, lcm) as (bus, recorder), _display(args, lcm) as display:
-        print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
-        observers = [recorder, events_printer(wearer), display]
-        exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers)
-        exoskeleton.run(args.clock, args.duration)
-    checks = _checks(wearer, exoskeleton, recorder)
-    if schedule(args.duration).speed_m_s == 0:
-        checks.insert(1, _standing(exoskeleton))
-    checks += _log_checks(args, recorder, config)
-    return _finish(_draw(args.out, recorder, wearer, config), wearer, exoskeleton, recorder, checks)
+    with RunFolder("--out", args.out, run_names()) as run_folder:
+        walking = firmware(args, config, lcm, run_folder)
+        with walking as (bus, recorder), _display(args, lcm) as display:
+            print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
+            observers = [recorder, events_printer(wearer), display]
+            exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers)
+            exoskeleton.run(args.clock, args.duration)
+        checks = _checks(wearer, exoskeleton, recorder)
+        if schedule(args.duration).speed_m_s == 0:
+            checks.insert(1, _standing(exoskeleton))
+        checks += _log_checks(args, recorder, config)
+        picture = recorder.csv_path.with_name(PICTURE)
+        draw_walk(recorder.csv_path, picture, wearer.pushes, config)
+    return _finish(args.out, wearer, exoskeleton, recorder, checks)
 
 
 def _clock(args: argparse.Namespace) -> str:
@@ -102,34 +113,46 @@ def _clock(args: argparse.Namespace) -> str:
 
 
 @contextlib.contextmanager
-def _host(args: argparse.Namespace, config: Any, lcm: Any) -> "Iterator[tuple[Any, Recorder]]":
+def _host(
+    args: argparse.Namespace, config: Any, lcm: Any, run_folder: "RunFolder"
+) -> "Iterator[tuple[Any, Recorder]]":
     """The bus of a new host process, and what is recorded of it from its first word on."""
     from saddlewalk.emulation.host import running_host
-    from saddlewalk.logs.recorder import Recorder
     from saddlewalk.transport.bus import open_bus
 
     options = [f"--can={args.can}", f"--clock={args.clock}", *host_arguments(config)]
     options += [f"--lcm={args.lcm}"] if args.lcm else []
     with open_bus(args.can) as bus:
         _refuse_company(bus, lcm)
-        with Recorder(args.out, lcm) as recorder, running_host(*options):
+        with _recorder(run_folder, lcm) as recorder, running_host(*options):
             yield bus, recorder
 
 
 @contextlib.contextmanager
 def _controller(
-    args: argparse.Namespace, config: Any, lcm: Any
+    args: argparse.Namespace, config: Any, lcm: Any, run_folder: "RunFolder"
 ) -> "Iterator[tuple[Any, Recorder]]":
     """The same of an emulated controller."""
     from saddlewalk.emulation.qemu import running_controller
-    from saddlewalk.logs.recorder import Recorder
 
     with running_controller(config) as controller:
         _refuse_company(controller.bus, lcm)
-        with Recorder(args.out, lcm) as recorder:
+        with _recorder(run_folder, lcm) as recorder:
             print("LCM: only of the wearer, a controller has none")
             yield controller.bus, recorder
     print(f"controller: {controller.words}")
+
+
+def _recorder(run_folder: "RunFolder", lcm: Any) -> "Recorder":
+    from saddlewalk.logs.recorder import Recorder
+
+    if run_folder.earlier:
+        print(
+            f"{run_folder.folder} holds an earlier run: this one replaces it and what was made of "
+            "its log, when it has ended",
+            flush=True,
+        )
+    return Recorder(run_folder.start(), lcm)
 
 
 def _open_lcm(url: str | None) -> Any:
@@ -194,16 +217,8 @@ def _display(args: argparse.Namespace, lcm: Any) -> Iterator[Any]:
         yield Display()
 
 
-def _draw(folder: Path, recorder: "Recorder", wearer: "Wearer", config: Any) -> Path:
-    from saddlewalk.pictures.walk import draw_walk
-
-    picture = folder / "walk.png"
-    draw_walk(recorder.csv_path, picture, wearer.pushes, config)
-    return picture
-
-
 def _finish(
-    picture: Path,
+    folder: Path,
     wearer: "Wearer",
     exoskeleton: "Exoskeleton",
     recorder: "Recorder",
@@ -214,7 +229,7 @@ def _finish(
     print(level_times(recorder))
     for good, words in checks:
         print(f"  {'ok ' if good else 'BAD'}  {words}")
-    for path in (picture, recorder.csv_path, recorder.can_path, recorder.lcm_path):
+    for path in (folder / name for name in (PICTURE, TABLE, CAN_LOG, LCM_LOG)):
         print(f"  {path}  {path.stat().st_size / 1024:.0f} KiB")
     return 0 if all(good for good, _ in checks) else 1
 
@@ -287,7 +302,7 @@ def _rerun(log: Path, config: Any) -> Check:
         else:
             report = rerun_can(load_can_log(log).records, config)
     except UserError as error:
-        return False, f"{log} cannot be rerun: {error}"
+        return False, f"{log.name} cannot be rerun: {error}"
     if report.first:
         return False, f"rerun of the log: {report.first}"
     words = f"{report.ticks} ticks computed again from the log: the same bits"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from saddlewalk.config import add_body_options, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.options import add_gait_options, number_in, whole_number_in
+from saddlewalk.outputs import add_input
 
 if TYPE_CHECKING:
     from saddlewalk.emulation.wearer import Noise, Push, Wearer
@@ -29,7 +30,8 @@ def add_parser(subparsers: Any) -> None:
         metavar="X",
         help="of the sensors and of the wearer's unsteadiness (default 1)",
     )
-    parser.add_argument(
+    add_input(
+        parser,
         "--faults",
         type=Path,
         metavar="FILE",

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
-from saddlewalk.errors import UserError
 from saddlewalk.options import add_campaign_options, whole_number_in
+from saddlewalk.outputs import OutputFolder, add_input, add_output
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from saddlewalk.evaluation.walks import Walk
 
 WALKS = 1000
+FILES = ("evaluation.json", "walks.csv", "roc.png", "region.png")
 
 
 def add_parser(subparsers: Any) -> None:
@@ -34,17 +35,20 @@ def add_parser(subparsers: Any) -> None:
         help=f"pushed walks of each kind of wearer (default {WALKS})",
     )
     add_campaign_options(parser)
-    parser.add_argument(
+    add_input(
+        parser,
         "--gait",
         type=Path,
         metavar="FOLDER",
         help="recorded trials of people who did not fall, CSV as for replay",
     )
-    parser.add_argument(
+    add_output(
+        parser,
         "--out",
+        output=OutputFolder(FILES),
         type=Path,
         metavar="FOLDER",
-        help="for evaluation.json, walks.csv, roc.png and region.png",
+        help=f"for {', '.join(FILES)}",
     )
     add_body_options(parser)
     parser.set_defaults(run=run)
@@ -59,8 +63,6 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.evaluation.walks import KINDS
 
     config = load_config(args)
-    if args.out:
-        _make_folder(args.out)
     console = Console()
     console.print(f"seed {args.seed}, {args.walks} pushed walks of each kind, {args.jobs} jobs")
     trials = judge_folder(args.gait, config) if args.gait else []
@@ -95,13 +97,6 @@ def run(args: argparse.Namespace) -> int:
         }
         _write(console, args.out, result, walks, config)
     return 0
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"--out {folder}: {error.strerror}") from error
 
 
 def _walk(args: argparse.Namespace, config: Any) -> list["Walk"]:
@@ -218,16 +213,18 @@ def _tell_trials(console: "Console", trials: Sequence["GaitTrial"]) -> None:
 def _write(
     console: "Console", folder: Path, result: dict[str, Any], walks: list["Walk"], config: Any
 ) -> None:
+    from saddlewalk.atomic_write import whole_folder
     from saddlewalk.evaluation.pictures import draw_region, draw_rocs
     from saddlewalk.table import write_table
 
     rows = [walk.row() for walk in walks]
-    write_table(str(folder / "walks.csv"), list(rows[0]), (list(row.values()) for row in rows))
-    text = json.dumps(_without_nan(result), indent=1)
-    (folder / "evaluation.json").write_text(text + "\n")
-    draw_rocs(walks, folder / "roc.png")
-    draw_region(config, folder / "region.png")
-    for name in ("evaluation.json", "walks.csv", "roc.png", "region.png"):
+    with whole_folder("--out", folder, FILES) as new:
+        write_table(str(new / "walks.csv"), list(rows[0]), (list(row.values()) for row in rows))
+        text = json.dumps(_without_nan(result), indent=1)
+        (new / "evaluation.json").write_text(text + "\n")
+        draw_rocs(walks, new / "roc.png")
+        draw_region(config, new / "region.png")
+    for name in FILES:
         console.print(f"  {folder / name}")
 
 

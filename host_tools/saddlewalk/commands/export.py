@@ -5,7 +5,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-FORMATS = ("csv", "parquet", "mcap")
+from saddlewalk.logs.run_files import TABLE_FORMATS, exported, table_names
+from saddlewalk.outputs import Output, OutputFile, OutputFolder, add_input, add_output
 
 
 def add_parser(subparsers: Any) -> None:
@@ -16,10 +17,13 @@ def add_parser(subparsers: Any) -> None:
         "units in the column names. MCAP (JSON with schemas) opens in Foxglove and PlotJuggler. "
         "Parquet and MCAP need the optional packages of saddlewalk[export].",
     )
-    parser.add_argument("log", type=Path, metavar="LOG", help="an LCM log")
-    parser.add_argument("--format", choices=FORMATS, required=True)
-    parser.add_argument(
+    add_input(parser, "log", type=Path, metavar="LOG", help="an LCM log")
+    parser.add_argument("--format", choices=(*TABLE_FORMATS, "mcap"), required=True)
+    add_output(
+        parser,
         "--out",
+        output=_output,
+        beside=lambda args: exported(args.log, args.format),
         type=Path,
         metavar="OUT",
         help="mcap: the file; csv and parquet: the folder, which gets a file for each channel "
@@ -40,12 +44,10 @@ def run(args: argparse.Namespace) -> int:
             f"{args.log}: none of its {len(log.records)} messages, on {', '.join(left_out)}, is of "
             "a type of saddlewalk's"
         )
-    out = args.out or _beside(args.log, args.format)
-    if out.exists() and out.samefile(args.log):
-        raise UserError(f"--out {out} is the log itself: give another")
     write = getattr(log_tables, f"write_{args.format}")
-    for path in write(tables, out):
-        print(path)
+    told = sys.stderr if str(args.out) == "-" else sys.stdout
+    for path in write(tables, args.out):
+        print(path, file=told)
     remarks = [
         f"left out: {n} messages on {name}, of no type of ours" for name, n in left_out.items()
     ]
@@ -55,5 +57,5 @@ def run(args: argparse.Namespace) -> int:
     return 1 if log.broken else 0
 
 
-def _beside(log: Path, form: str) -> Path:
-    return log.with_suffix(".mcap") if form == "mcap" else log.with_name(f"{log.stem}-{form}")
+def _output(args: argparse.Namespace) -> Output:
+    return OutputFile() if args.format == "mcap" else OutputFolder(table_names(args.format))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
 from saddlewalk.options import add_campaign_options, whole_number_in
+from saddlewalk.outputs import add_input
 
 if TYPE_CHECKING:
     from saddlewalk.faults.campaign import Outcome, Row
@@ -24,7 +25,8 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "faults", help="walks on a bus that fails: what is detected, and is any output unsafe?"
     )
-    parser.add_argument(
+    add_input(
+        parser,
         "--scenario",
         type=Path,
         metavar="FILE",

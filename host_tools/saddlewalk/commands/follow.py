@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import ANKLES, add_body_options, load_config
 from saddlewalk.options import add_recordings, number_in
+from saddlewalk.outputs import add_output
 
 if TYPE_CHECKING:
     from saddlewalk.gait.following import Deviation
@@ -39,7 +40,7 @@ def add_parser(subparsers: Any) -> None:
         help="foot angle at heel strike (default 10)",
     )
     parser.add_argument("--ankle", choices=ANKLES, help="of the calibrated plan (default erf)")
-    parser.add_argument("--out", metavar="FILE", help="the table as CSV")
+    add_output(parser, "--out", metavar="FILE", help="the table as CSV")
     parser.set_defaults(run=run)
 
 

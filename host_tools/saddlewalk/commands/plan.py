@@ -12,6 +12,7 @@ from typing import Any
 from saddlewalk.config import ANKLES, add_body_options, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.options import add_gait_options, number_in, whole_number_in
+from saddlewalk.outputs import OutputFile, add_output
 from saddlewalk.planning.steady import COLUMNS, row_of, walk
 from saddlewalk.table import Cell, write_table
 
@@ -44,8 +45,12 @@ def add_parser(subparsers: Any) -> None:
         metavar="S",
         help="with --schedule (default: until it stands again, or 5 s after the last row)",
     )
-    parser.add_argument(
-        "--picture", metavar="FILE", help="with --schedule: draw the walk, as PNG, SVG or PDF"
+    add_output(
+        parser,
+        "--picture",
+        output=OutputFile((".png", ".svg", ".pdf")),
+        metavar="FILE",
+        help="with --schedule: draw the walk, as PNG, SVG or PDF",
     )
     parser.add_argument(
         "--dt",
@@ -56,7 +61,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("--ankle", choices=ANKLES, help="ankle strategy (default erf)")
     add_body_options(parser)
-    parser.add_argument("--out", metavar="FILE", help="default: standard output")
+    add_output(parser, "--out", metavar="FILE", help="default: standard output")
     parser.set_defaults(run=run)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk import verdict
 from saddlewalk.config import add_body_options
+from saddlewalk.outputs import add_input, add_output
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,7 +25,7 @@ def add_parser(subparsers: Any) -> None:
         "replay", help="send a recorded walk through CAN to the firmware"
     )
     trial = parser.add_mutually_exclusive_group(required=True)
-    trial.add_argument("trial", nargs="?", metavar="TRIAL.csv", help="- reads standard input")
+    add_input(trial, "trial", nargs="?", metavar="TRIAL.csv", help="- reads standard input")
     trial.add_argument("--sample", choices=SAMPLE_NAMES, help="a recorded person of gaitkit's data")
     parser.add_argument(
         "--can",
@@ -38,7 +39,7 @@ def add_parser(subparsers: Any) -> None:
         help="as fast as the firmware answers, or as it was walked, with LCM (default lockstep)",
     )
     add_body_options(parser)
-    parser.add_argument("--out", metavar="FILE", help="scores of every tick as CSV")
+    add_output(parser, "--out", metavar="FILE", help="scores of every tick as CSV")
     parser.set_defaults(run=run)
 
 

@@ -5,7 +5,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from saddlewalk.errors import UserError
+from saddlewalk.logs.run_files import reported
+from saddlewalk.outputs import add_input, add_output
 
 
 def add_parser(subparsers: Any) -> None:
@@ -17,9 +18,11 @@ def add_parser(subparsers: Any) -> None:
         "variability, distance, data quality, configuration. Exit status 1 if the log is "
         "incomplete; the page then says so.",
     )
-    parser.add_argument("log", type=Path, metavar="LOG", help="an LCM log")
-    parser.add_argument(
+    add_input(parser, "log", type=Path, metavar="LOG", help="an LCM log")
+    add_output(
+        parser,
         "--out",
+        beside=lambda args: reported(args.log),
         type=Path,
         metavar="report.html",
         help="the page (default: beside LOG, as walk.lcmlog.html of walk.lcmlog)",
@@ -28,25 +31,16 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from saddlewalk.atomic_write import whole_file
     from saddlewalk.session.page import in_words, write_page
     from saddlewalk.session.runs import load_session
 
     session = load_session(args.log)
-    out = args.out or args.log.with_name(f"{args.log.name}.html")
-    if out.exists() and out.samefile(args.log):
-        raise UserError(f"--out {out} is the log itself: give another")
-    _write(out, write_page(args.log, session))
-    print(*in_words(session), out, sep="\n")
+    page = write_page(args.log, session)
+    with whole_file("--out", args.out, "wb") as file:
+        file.write(page.encode())
+    told = sys.stderr if str(args.out) == "-" else sys.stdout
+    print(*in_words(session), args.out, sep="\n", file=told)
     if session.broken:
         print(f"incomplete: {session.broken}", file=sys.stderr)
     return 1 if session.broken else 0
-
-
-def _write(out: Path, page: str) -> None:
-    from saddlewalk.table import whole_file
-
-    try:
-        with whole_file(out, "wb") as file:
-            file.write(page.encode())
-    except OSError as error:
-        raise UserError(f"--out {out}: {error.strerror}") from error

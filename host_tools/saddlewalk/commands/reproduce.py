@@ -4,9 +4,13 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from saddlewalk.errors import UserError
+from saddlewalk.outputs import OutputFolder, add_input, add_output
 
 PAGE = "paper.html"
+PICTURES = (
+    *("steps.png", "lateral-stability.png", "vertical-amplitude.png"),
+    *("vertical-motion.png", "from-above.png", "toe-off.png"),
+)
 
 
 def add_parser(subparsers: Any) -> None:
@@ -17,14 +21,17 @@ def add_parser(subparsers: Any) -> None:
         f"paper states. Writes {PAGE}, which has everything in it, and each figure as PNG. Exit "
         "status 1 if a number is off by more than its tolerance or a finding does not hold.",
     )
-    parser.add_argument(
+    add_output(
+        parser,
         "--out",
+        output=OutputFolder((PAGE, *PICTURES)),
         type=Path,
         default=Path("out/paper"),
         metavar="FOLDER",
         help="for the page and the figures (default out/paper)",
     )
-    parser.add_argument(
+    add_input(
+        parser,
         "--gait",
         type=Path,
         metavar="FOLDER",
@@ -35,6 +42,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from saddlewalk.atomic_write import whole_folder
     from saddlewalk.paper.figures import draw_all
     from saddlewalk.paper.numbers import findings, numbers, simulate_all
     from saddlewalk.paper.page import ONLY_ORENDURFF, verdict, write_page
@@ -46,20 +54,10 @@ def run(args: argparse.Namespace) -> int:
     pictures = draw_all(simulations, trials)
     page = write_page(compared, found, simulations, pictures, trials)
     files = {PAGE: page.encode()} | {each.name: each.png for each in pictures}
-    _write(args.out, files)
+    with whole_folder("--out", args.out, (PAGE, *PICTURES)) as folder:
+        for name, content in files.items():
+            (folder / name).write_bytes(content)
     print(verdict(compared, found))
     print(f"{len(trials)} recorded trials" if trials else ONLY_ORENDURFF)
     print(*(f"  {args.out / name}" for name in files), sep="\n")
     return 0 if all(each.sound for each in compared) and all(each.holds for each in found) else 1
-
-
-def _write(folder: Path, files: dict[str, bytes]) -> None:
-    from saddlewalk.table import whole_file
-
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, content in files.items():
-            with whole_file(folder / name, "wb") as file:
-                file.write(content)
-    except OSError as error:
-        raise UserError(f"--out {folder}: {error.strerror}") from error

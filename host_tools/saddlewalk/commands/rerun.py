@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options
 from saddlewalk.errors import UserError
+from saddlewalk.outputs import add_input
 
 if TYPE_CHECKING:
     from saddlewalk.logs.rerun import Report
@@ -22,7 +23,7 @@ def add_parser(subparsers: Any) -> None:
         "from its start, but for the configuration, which the options give; of HEALTH, the counts "
         "of late ticks and rejected frames are not compared.",
     )
-    parser.add_argument("log", type=Path, metavar="LOG", help="an LCM log or a CAN log")
+    add_input(parser, "log", type=Path, metavar="LOG", help="an LCM log or a CAN log")
     add_body_options(parser)
     parser.set_defaults(run=run)
 

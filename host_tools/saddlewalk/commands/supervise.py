@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
 from saddlewalk.options import speed
+from saddlewalk.outputs import add_input, add_output
 from saddlewalk.table import read_series, write_table
 
 if TYPE_CHECKING:
@@ -23,10 +24,15 @@ def add_parser(subparsers: Any) -> None:
         "flags: bits 0-15 saddle_fault_t, 16-23 saddle_limit_t, 24-31 the saddle_reason_t that "
         "decided the level.",
     )
-    parser.add_argument(
-        "--in", dest="source", required=True, metavar="FILE", help="states as CSV; - reads stdin"
+    add_input(
+        parser,
+        "--in",
+        dest="source",
+        required=True,
+        metavar="FILE",
+        help="states as CSV; - reads stdin",
     )
-    parser.add_argument("--out", metavar="FILE", help="default: standard output")
+    add_output(parser, "--out", metavar="FILE", help="default: standard output")
     parser.add_argument(
         "--speed",
         type=speed,

@@ -17,6 +17,7 @@ from saddlewalk import verdict
 from saddlewalk.emulation.exoskeleton import Observer, Tick
 from saddlewalk.emulation.wearer import MODES, Wearer
 from saddlewalk.errors import UserError
+from saddlewalk.logs.run_files import CAN_LOG, LCM_LOG, TABLE
 from saddlewalk.table import Cell, format_cell
 from saddlewalk.ticks import Signals, scores_of
 from saddlewalk.transport.lcmbus import listen, receive
@@ -48,16 +49,15 @@ _SCORES = "S_PEND S_JUMP S_SW MOS_COM MOS_XCOM V_COMP GRAVITY_X GRAVITY_Y".split
 
 
 class Recorder(Observer):
-    """Writes walk.lcmlog, walk.candump.log and walk.csv into a folder while it is open."""
+    """Writes the LCM log, the CAN log and the table of a walk into a folder while it is open."""
 
     def __init__(self, folder: Path, bus: lcm.LCM) -> None:
-        self.lcm_path = folder / "walk.lcmlog"
-        self.can_path = folder / "walk.candump.log"
-        self.csv_path = folder / "walk.csv"
+        self.lcm_path = folder / LCM_LOG
+        self.can_path = folder / CAN_LOG
+        self.csv_path = folder / TABLE
         self.frames = self.rows = self.lcm_messages = 0
         self.levels: list[str] = []  # announced, of each tick
         try:
-            folder.mkdir(parents=True, exist_ok=True)
             self._csv_file = self.csv_path.open("w", newline="")
             self._can_log = can.CanutilsLogWriter(self.can_path, channel="saddlewalk")
             self._lcm_log = lcm.EventLog(str(self.lcm_path), "w", overwrite=True)

@@ -5,19 +5,20 @@ since 1970. An array becomes a column for each element, whose name stands before
 com_m[3] is com_x_m, com_y_m, com_z_m. Numbers that are not known are NaN.
 """
 
-import contextlib
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
+from saddlewalk.atomic_write import whole_file, whole_folder
 from saddlewalk.errors import UserError
 from saddlewalk.logs.messages import CHANNEL_PREFIX, Event, decode
+from saddlewalk.logs.run_files import table_names
 from saddlewalk.paths import install_command
-from saddlewalk.table import whole_file, write_table
+from saddlewalk.table import write_table
 
 UNITS = tuple(f"_{unit}" for unit in "m_s n_s m rad s us n j kg".split())  # longest first
 SIDES = ("left", "right")
@@ -98,11 +99,11 @@ def element_names(name: str, count: int) -> list[str]:
 
 def write_csv(tables: list[Table], folder: Path) -> list[Path]:
     """FOLDER/plan.csv and so on; an unknown number is an empty cell."""
-    paths = _files(tables, folder, "csv")
-    for table, path in zip(tables, paths, strict=True):
-        rows = ([row.get(column) for column in table.kinds] for row in table.rows)
-        write_table(str(path), list(table.kinds), rows)
-    return paths
+    with whole_folder("--out", folder, table_names("csv")) as new:
+        for table in tables:
+            rows = ([row.get(column) for column in table.kinds] for row in table.rows)
+            write_table(str(new / f"{table.name}.csv"), list(table.kinds), rows)
+    return [folder / f"{table.name}.csv" for table in tables]
 
 
 def write_parquet(tables: list[Table], folder: Path) -> list[Path]:
@@ -113,18 +114,17 @@ def write_parquet(tables: list[Table], folder: Path) -> list[Path]:
     except ImportError as error:
         raise _missing("parquet", "pyarrow") from error
     arrow = {"float": "float32", "double": "float64"}
-    paths = _files(tables, folder, "parquet")
-    for table, path in zip(tables, paths, strict=True):
-        columns = {
-            column: pyarrow.array(
-                [row.get(column) for row in table.rows],
-                pyarrow.type_for_alias(arrow.get(kind, kind.removesuffix("_t"))),
-            )
-            for column, kind in table.kinds.items()
-        }
-        with _output(path) as file:
-            pyarrow.parquet.write_table(pyarrow.table(columns), file)
-    return paths
+    with whole_folder("--out", folder, table_names("parquet")) as new:
+        for table in tables:
+            columns = {
+                column: pyarrow.array(
+                    [row.get(column) for row in table.rows],
+                    pyarrow.type_for_alias(arrow.get(kind, kind.removesuffix("_t"))),
+                )
+                for column, kind in table.kinds.items()
+            }
+            pyarrow.parquet.write_table(pyarrow.table(columns), new / f"{table.name}.parquet")
+    return [folder / f"{table.name}.parquet" for table in tables]
 
 
 def write_mcap(tables: list[Table], path: Path) -> list[Path]:
@@ -133,7 +133,7 @@ def write_mcap(tables: list[Table], path: Path) -> list[Path]:
         from mcap.writer import Writer
     except ImportError as error:
         raise _missing("mcap", "mcap") from error
-    with _output(path) as file:
+    with whole_file("--out", path, "wb") as file:
         writer = Writer(file)
         writer.start(library="saddlewalk")
         for table in tables:
@@ -169,20 +169,3 @@ def _json_type(kind: str) -> str:
 
 def _missing(form: str, package: str) -> UserError:
     return UserError(f"--format {form} needs {package}: {install_command('export')}")
-
-
-def _files(tables: list[Table], folder: Path, suffix: str) -> list[Path]:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"--out {folder}: {error.strerror}: give a folder") from error
-    return [folder / f"{table.name}.{suffix}" for table in tables]
-
-
-@contextlib.contextmanager
-def _output(path: Path) -> Iterator[IO]:
-    try:
-        with whole_file(path, "wb") as file:
-            yield file
-    except OSError as error:
-        raise UserError(f"--out {path}: {error.strerror}") from error

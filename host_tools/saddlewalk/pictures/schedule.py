@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby, pairwise
+from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from saddlewalk.errors import UserError
+from saddlewalk.atomic_write import whole_file
 from saddlewalk.pictures.walk import BLUE, FEET, FOOT_M, ORANGE, PINK, SKY
 from saddlewalk.planning.schedule import Instant, Wish, mode_of
 
@@ -18,7 +19,7 @@ LATERAL_M = 0.26  # shown to each side
 
 
 def draw_schedule(path: str, wishes: Sequence[Wish], walked: Sequence[Instant]) -> None:
-    """Draw to a file whose suffix names the format. Raises UserError if that cannot be written."""
+    """Draw to a file whose suffix names the format, PNG without one."""
     figure = Figure(figsize=(12, 8), dpi=100, layout="constrained")
     speed, above, height = figure.subplots(3, 1, height_ratios=(1, 1.25, 1))
     time_s = np.array([instant.t_s for instant in walked])
@@ -32,12 +33,8 @@ def draw_schedule(path: str, wishes: Sequence[Wish], walked: Sequence[Instant]) 
         _shade(axes, walked, time_s)
     _shade(above, walked, com_m[:, 0])
     _label_modes(speed, walked, time_s)
-    try:
-        figure.savefig(path)
-    except OSError as error:
-        raise UserError(f"--picture {path}: {error.strerror}") from error
-    except ValueError as error:
-        raise UserError(f"--picture {path}: {error}") from error
+    with whole_file("--picture", path, "wb") as file:
+        figure.savefig(file, format=Path(path).suffix.lower().removeprefix(".") or "png")
 
 
 def _com_m(instant: Instant) -> tuple[float, float, float]:

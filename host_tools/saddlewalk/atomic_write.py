@@ -1,0 +1,216 @@
+"""Files that are there once all is written, and until then are what they were.
+
+What is written goes to a new file or folder beside and is renamed at the end, so that a command
+that fails or is ended, whenever and by whatever, costs nothing that was there before.
+"""
+
+import contextlib
+import fcntl
+import os
+import shutil
+import signal
+import stat
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Self
+
+from saddlewalk.errors import UserError
+
+STDIN, STDOUT, STDERR = range(3)
+UNFINISHED = "unfinished"
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+def own_descriptor(path: str | Path) -> int | None:
+    """The number of what this process has open already: of /dev/stdout, /dev/fd/3 and the like."""
+    standard = {"/dev/stdin": STDIN, "/dev/stdout": STDOUT, "/dev/stderr": STDERR}
+    if str(path) in standard:
+        return standard[str(path)]
+    folder, name = os.path.split(path)
+    if not name.isdigit() or os.path.realpath(folder) != f"/proc/{os.getpid()}/fd":
+        return None
+    return int(name)
+
+
+@contextlib.contextmanager
+def whole_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO]:
+    """A file that is at `path` once all is written; "-": standard output.
+
+    What is no ordinary file, or is open already, is written to and not replaced. Raises UserError,
+    naming the option, if it cannot be written.
+    """
+    if str(path) == "-":
+        yield sys.stdout.buffer if "b" in mode else sys.stdout
+        return
+    try:
+        with _open(Path(path), mode) as file:
+            yield file
+    except OSError as error:
+        raise UserError(f"{option} {path}: {error.strerror}") from error
+
+
+def write_text(option: str, path: str | Path, text: str) -> None:
+    """Write to a whole_file()."""
+    with whole_file(option, path) as file:
+        file.write(text)
+
+
+@contextlib.contextmanager
+def whole_folder(option: str, folder: Path, names: Sequence[str]) -> Iterator[Path]:
+    """A new folder whose files come to `folder` once all are written.
+
+    Files of `names` in `folder` that are not written again are removed: they are of another run.
+    No other file is touched. Raises UserError, naming the option, if it cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder, prefix=".new.") as new:
+            yield Path(new)
+            _replace(folder, Path(new), names)
+    except OSError as error:
+        raise UserError(f"{option} {folder}: {error.strerror}") from error
+
+
+class RunFolder:
+    """A whole_folder() for what cannot be had again: files that grow while something happens.
+
+    They grow in FOLDER/unfinished. A run that fails or is ended stays there if FOLDER holds an
+    earlier run, and else comes to FOLDER as far as it went.
+    """
+
+    def __init__(self, option: str, folder: Path, names: Sequence[str]) -> None:
+        self.folder = folder
+        self._option, self._names = option, names
+        self._new = folder / UNFINISHED
+        self._lock: int | None = None
+
+    @property
+    def earlier(self) -> list[str]:
+        """The names that are there of an earlier run."""
+        return [name for name in self._names if _is_there(self.folder / name)]
+
+    def start(self) -> Path:
+        """The folder to write to, empty. Raises UserError if another run is recorded there."""
+        try:
+            self._new.mkdir(parents=True, exist_ok=True)
+            lock = os.open(self._new, os.O_RDONLY)
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            for name in self._names:
+                (self._new / name).unlink(missing_ok=True)
+            self._lock = lock
+        except BlockingIOError as error:
+            raise UserError(
+                f"{self._option} {self.folder}: another run is being recorded there: give another"
+            ) from error
+        except OSError as error:
+            raise UserError(f"{self._option} {self.folder}: {error.strerror}") from error
+        return self._new
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, _: BaseException | None, __: TracebackType | None
+    ) -> None:
+        if self._lock is None:
+            return
+        os.close(self._lock)
+        if kind and self.earlier:
+            print(
+                f"{self.folder} still holds the run before; what was recorded of this one is in "
+                f"{self._new}",
+                flush=True,
+            )
+            return
+        try:
+            _replace(self.folder, self._new, self._names)
+        except OSError as error:
+            words = f"{error.strerror}: the run is in {self._new}"
+            raise UserError(f"{self._option} {self.folder}: {words}") from error
+        with contextlib.suppress(OSError):  # somebody has put a file of their own there
+            self._new.rmdir()
+
+
+@contextlib.contextmanager
+def _open(path: Path, mode: str) -> Iterator[IO]:
+    newline = None if "b" in mode else ""
+    descriptor = own_descriptor(path)
+    if descriptor is not None:
+        with os.fdopen(os.dup(descriptor), mode, newline=newline) as file:
+            yield file
+        return
+    if path.exists() and not path.is_file():
+        with path.open(mode, newline=newline) as file:
+            yield file
+        return
+    path = path.resolve()  # a link stays one
+    descriptor, partial = tempfile.mkstemp(dir=path.parent, prefix=".new.")
+    try:
+        with os.fdopen(descriptor, mode, newline=newline) as file:
+            yield file
+            file.flush()
+            os.fsync(descriptor)
+        Path(partial).chmod(_permissions(path))
+        Path(partial).replace(path)
+    finally:
+        Path(partial).unlink(missing_ok=True)
+
+
+def _permissions(path: Path) -> int:
+    """Those of the file that is there, else those of a new one."""
+    if path.exists():
+        return stat.S_IMODE(path.stat().st_mode)
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
+
+
+def _is_there(path: Path) -> bool:
+    return path.is_symlink() or path.is_file()
+
+
+def _replace(folder: Path, new: Path, names: Sequence[str]) -> None:
+    """Move the files of `names` in `new` to `folder`, in the place of all those there, or none."""
+    with _uninterrupted():
+        old = Path(tempfile.mkdtemp(dir=folder, prefix=".old."))
+        moves = [(folder / name, old / name) for name in names if _is_there(folder / name)]
+        moves += [(new / name, folder / name) for name in names if _is_there(new / name)]
+        _move_all(moves)
+        shutil.rmtree(old)
+        for part in {(folder / name).parent for name in names} - {folder}:
+            with contextlib.suppress(OSError):  # it is not there, or holds another file
+                part.rmdir()
+
+
+def _move_all(moves: Sequence[tuple[Path, Path]]) -> None:
+    """All or, with an OSError, none."""
+    done = []
+    try:
+        for source, target in moves:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            source.rename(target)
+            done.append((source, target))
+    except OSError:
+        for source, target in reversed(done):
+            target.rename(source)
+        raise
+
+
+@contextlib.contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Ctrl-C, SIGTERM and SIGHUP wait until the end."""
+    came: list[int] = []
+    before = {number: signal.getsignal(number) for number in ENDING}
+    for number, handler in before.items():
+        if handler != signal.SIG_IGN:
+            signal.signal(number, lambda signum, _: came.append(signum))
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    for number in came[:1]:
+        signal.raise_signal(number)

@@ -1,0 +1,34 @@
+"""What the files of a run are called, and those that are made of its log beside it."""
+
+from pathlib import Path
+
+from saddlewalk.paths import CHECKOUT
+
+LCM_LOG, CAN_LOG, TABLE, PICTURE = "walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"
+TABLE_FORMATS = ("csv", "parquet")
+
+
+def table_names(form: str) -> tuple[str, ...]:
+    """Of the tables of a log in a folder, one for each LCM type."""
+    types = sorted((CHECKOUT / "lcm_types").glob("*_t.lcm"))
+    return tuple(f"{path.stem.removesuffix('_t')}.{form}" for path in types)
+
+
+def exported(log: Path, form: str) -> Path:
+    """Where a log is exported to by default: a file or, for tables, a folder."""
+    return log.with_suffix(".mcap") if form == "mcap" else log.with_name(f"{log.stem}-{form}")
+
+
+def reported(log: Path) -> Path:
+    """Where the page of a log is by default."""
+    return log.with_name(f"{log.name}.html")
+
+
+def run_names() -> tuple[str, ...]:
+    """All that belongs to one run in its folder."""
+    log = Path(LCM_LOG)
+    made = [str(reported(log)), str(exported(log, "mcap"))]
+    made += [
+        str(exported(log, form) / name) for form in TABLE_FORMATS for name in table_names(form)
+    ]
+    return (LCM_LOG, CAN_LOG, TABLE, PICTURE, *made)
