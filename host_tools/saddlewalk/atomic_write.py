@@ -43,7 +43,11 @@ def whole_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO]:
     naming the option, if it cannot be written.
     """
     if str(path) == "-":
-        yield sys.stdout.buffer if "b" in mode else sys.stdout
+        if "b" not in mode:
+            yield sys.stdout
+            return
+        with os.fdopen(os.dup(STDOUT), mode) as file:  # which a library may close
+            yield file
         return
     try:
         with _open(Path(path), mode) as file:

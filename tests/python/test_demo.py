@@ -273,6 +273,60 @@ def test_demo_that_is_ended_keeps_its_logs_and_ends_the_firmware(tmp_path, ports
         assert bus.recv(3 * TICK_S) is None
 
 
+def contents(folder: Path) -> dict[str, bytes]:
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def test_a_run_takes_the_place_of_the_run_before_once_it_is_complete(tmp_path, ports, capsys):
+    """With all that was made of its log, and of no other file."""
+    assert demo(tmp_path, ports, "--duration", "2") == 0
+    log = str(tmp_path / "walk.lcmlog")
+    for words in (["report", log], *(["export", log, "--format", x] for x in ("csv", "mcap"))):
+        assert main(words) == 0
+    theirs = {"notes.txt", "walk-csv/notes.txt"}
+    for name in theirs:
+        (tmp_path / name).write_text("mine")
+    before = contents(tmp_path)
+    assert {"walk.lcmlog.html", "walk.mcap", "walk-csv/plan.csv"} < set(before)
+
+    script = Path(sys.executable).with_name("saddlewalk")
+    program = [str(script), "demo", "--out", str(tmp_path), *ports]
+    with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as process:
+        told = ""
+        while "starting" not in told:
+            told += process.stdout.readline()
+            assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        told += process.communicate(timeout=10)[0]
+    assert "holds an earlier run" in told and f"is in {tmp_path / 'unfinished'}\n" in told
+    after = contents(tmp_path)
+    assert before.items() < after.items()
+    logs = {"walk.csv", "walk.lcmlog", "walk.candump.log"}
+    assert after.keys() - before.keys() == {f"unfinished/{name}" for name in logs}
+
+    capsys.readouterr()
+    assert demo(tmp_path, ports, "--duration", "1") == 0
+    assert "holds an earlier run" in capsys.readouterr().out
+    assert set(contents(tmp_path)) == FILES | theirs
+    assert len(rows(tmp_path)) == 13
+    assert not (tmp_path / "unfinished").exists()
+
+
+def test_two_runs_are_not_recorded_in_one_folder_at_once(tmp_path, ports, capsys):
+    from saddlewalk.atomic_write import RunFolder
+
+    with RunFolder("--out", tmp_path, ["walk.csv"]) as other:
+        (other.start() / "walk.csv").write_text("theirs")
+        assert demo(tmp_path, ports, "--duration", "1") == 2
+        told = capsys.readouterr().err
+        assert told.count("\n") == 1 and "another run is being recorded there" in told
+    assert (tmp_path / "walk.csv").read_text() == "theirs"
+
+
 def test_a_walk_that_should_have_stopped_and_has_not_is_not_sound(tmp_path, ports, capsys):
     schedule = tmp_path / "schedule.csv"
     schedule.write_text("t_s,speed_m_s\n0,1.0\n4,0\n")

@@ -1,0 +1,331 @@
+"""Every command that writes: no output is an input, each can be written, none is half written."""
+
+import argparse
+import importlib
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from host_node import own_lcm
+from saddlewalk import atomic_write
+from saddlewalk.cli import main, parser
+from saddlewalk.transport.bus import private_udp
+from synthetic_walk import Walk, csv_text
+
+CHECKOUT = Path(__file__).parents[2]
+SADDLEWALK = Path(sys.executable).with_name("saddlewalk")
+OLD = b"what was there before\n"
+
+
+@dataclass(frozen=True)
+class Writer:
+    """A command that writes. In `words`, {name} is the path of an input of that name."""
+
+    words: str
+    option: str
+    out: str  # a name that its option takes
+    holds: tuple[str, ...] = ()  # of a folder: files that the command writes there
+
+    @property
+    def command(self) -> str:
+        return self.words.split()[0]
+
+    def __str__(self) -> str:
+        return f"{self.words}, {self.option}"
+
+
+RUN = ("walk.csv", "walk.lcmlog", "walk.candump.log", "walk.png")
+WRITERS = [
+    Writer("plan --speed 1.2 --config {toml}", "--out", "plan.csv"),
+    Writer("plan --schedule {schedule} --config {toml}", "--out", "plan.csv"),
+    Writer("plan --schedule {schedule} --config {toml}", "--picture", "plan.svg"),
+    Writer("supervise --in {states} --config {toml}", "--out", "scores.csv"),
+    Writer("replay {walk}", "--out", "scores.csv"),
+    Writer("follow {walk} {other} --config {toml}", "--out", "follow.csv"),
+    Writer("calibrate {walk} {other}", "--out", "person.toml"),
+    Writer("calibrate {walk} {other}", "--header", "person.h"),
+    Writer("bench --rounds 1", "--json", "bench.json"),
+    Writer("evaluate --walks 1 --jobs 2 --gait {gait}", "--out", "found", ("evaluation.json",)),
+    Writer("reproduce --gait {gait}", "--out", "paper", ("paper.html", "steps.png")),
+    Writer("report {log}", "--out", "page.html"),
+    Writer("export {log} --format mcap", "--out", "log.mcap"),
+    Writer("export {log} --format csv", "--out", "tables", ("plan.csv",)),
+    Writer("export {log} --format parquet", "--out", "tables", ("plan.parquet",)),
+    Writer("demo --clock lockstep --duration 1 --schedule {schedule}", "--out", "run", RUN),
+]
+FILES = [writer for writer in WRITERS if not writer.holds]
+FOLDERS = [writer for writer in WRITERS if writer.holds]
+
+
+@pytest.fixture(scope="session")
+def inputs(walk, tmp_path_factory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("inputs")
+    (folder / "gait").mkdir()
+    recordings = {"walk.csv": 1.2, "other.csv": 1.0, "gait/somebody.csv": 1.2}
+    for name, speed_m_s in recordings.items():
+        (folder / name).write_text(csv_text(Walk(speed_m_s=speed_m_s, duration_s=10).recording()))
+    (folder / "person.toml").write_text("body_height_m = 1.7\n")
+    shutil.copy(CHECKOUT / "examples/schedule.csv", folder)
+    states = folder / "states.csv"
+    assert main(["plan", "--speed", "1.2", "--out", str(states)]) == 0
+    head, *rows = states.read_text().splitlines()
+    lines = [f"{head},left_contact,right_contact", *(f"{row},1,1" for row in rows)]
+    states.write_text("\n".join(lines))
+    shutil.copy(walk / "walk.lcmlog", folder)
+    return {
+        "walk": folder / "walk.csv",
+        "other": folder / "other.csv",
+        "gait": folder / "gait",
+        "toml": folder / "person.toml",
+        "schedule": folder / "schedule.csv",
+        "states": states,
+        "log": folder / "walk.lcmlog",
+    }
+
+
+@pytest.fixture
+def mine(inputs, tmp_path) -> dict[str, Path]:
+    """Copies of the inputs, for a test that may harm them."""
+    shutil.copytree(inputs["gait"].parent, tmp_path / "inputs")
+    return {name: tmp_path / "inputs" / path.name for name, path in inputs.items()}
+
+
+def run(writer: Writer, inputs: dict[str, Path], out: Path | str) -> int:
+    words = [word.format(**inputs) for word in writer.words.split()]
+    ports = ["--can", private_udp(), "--lcm", own_lcm()] if writer.command == "demo" else []
+    return main([*words, *ports, writer.option, str(out)])
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
+@pytest.fixture
+def refused(monkeypatch, capsys):
+    """Checks that a command refuses its output in one line, before it does anything."""
+
+    def check(writer: Writer, inputs: dict[str, Path], out: Path | str) -> str:
+        module = importlib.import_module(f"saddlewalk.commands.{writer.command}")
+        monkeypatch.setattr(module, "run", lambda args: pytest.fail("it ran"))
+        assert run(writer, inputs, out) == 2
+        told = capsys.readouterr()
+        assert (told.out, told.err.count("\n")) == ("", 1)
+        assert f"{writer.option} {out}" in told.err
+        return told.err
+
+    return check
+
+
+def commands() -> dict[str, argparse.ArgumentParser]:
+    return parser()._subparsers._group_actions[0].choices
+
+
+FILE_WORDS = {"FILE", "FOLDER", "LOG", "OUT", "TRIAL.csv", "RECORDING", "report.html"}
+
+
+def test_every_option_that_names_a_file_says_whether_it_is_written():
+    """Else check_files() would not know it."""
+    for name, command in commands().items():
+        for action in command._actions:
+            names_a_file = action.metavar in FILE_WORDS or action.type is Path
+            assert hasattr(action, "role") == names_a_file, f"{name} {action.dest}"
+
+
+def test_the_table_has_every_output_of_every_command():
+    outputs = {
+        (name, action.option_strings[0])
+        for name, command in commands().items()
+        for action in command._actions
+        if hasattr(action, "role") and action.role.output
+    }
+    assert outputs == {(writer.command, writer.option) for writer in WRITERS}
+
+
+def inputs_of(writer: Writer) -> list[str]:
+    return re.findall(r"{(\w+)}", writer.words)
+
+
+def other_names(target: Path, folder: Path, suffix: str) -> list[Path]:
+    """Paths and links to a file; links alone where the suffix would be refused."""
+    symbolic, hard = folder / f"symbolic{suffix}", folder / f"hard{suffix}"
+    symbolic.symlink_to(target)
+    hard.hardlink_to(target)
+    links = [symbolic, hard]
+    if suffix == ".svg":
+        return links
+    return [target, target.parent / ".." / target.parent.name / target.name, *links]
+
+
+@pytest.mark.parametrize("writer", FILES, ids=str)
+def test_an_output_that_is_an_input_is_refused(writer, mine, tmp_path, refused):
+    before = contents(tmp_path / "inputs")
+    for name in inputs_of(writer):
+        folder = tmp_path / name
+        folder.mkdir()
+        for out in other_names(mine[name], folder, Path(writer.out).suffix):
+            assert "is the same file as" in refused(writer, mine, out)
+    assert contents(tmp_path / "inputs") == before
+
+
+@pytest.mark.parametrize("writer", FOLDERS, ids=str)
+def test_a_folder_that_would_lose_an_input_is_refused(writer, mine, tmp_path, refused):
+    """The input is what the command would write there; or the folder is that of the input."""
+    for name in inputs_of(writer):
+        folder = tmp_path / name
+        folder.mkdir()
+        source = mine[name] / "somebody.csv" if mine[name].is_dir() else mine[name]
+        (folder / writer.holds[0]).hardlink_to(source)
+        assert "is the same file as" in refused(writer, mine, folder)
+    if "{gait}" in writer.words:
+        assert "is the same file as --gait" in refused(writer, mine, mine["gait"])
+
+
+@pytest.mark.parametrize("writer", WRITERS, ids=str)
+def test_an_output_that_cannot_be_written_is_refused(writer, inputs, tmp_path, refused):
+    name = writer.out
+    (tmp_path / "file").write_bytes(OLD)
+    refused(writer, inputs, tmp_path / "file" / name)
+    refused(writer, inputs, f"/proc/{name}")
+    refused(writer, inputs, tmp_path / ("x" * 300 + name))
+    if writer.holds:
+        refused(writer, inputs, tmp_path / "file")
+        (tmp_path / "run" / writer.holds[0]).mkdir(parents=True)
+        assert "is a folder" in refused(writer, inputs, tmp_path / "run")
+    else:
+        folder = tmp_path / name
+        folder.mkdir()
+        assert "is a folder" in refused(writer, inputs, folder)
+        assert "no folder" in refused(writer, inputs, tmp_path / "nowhere" / name)
+    assert (tmp_path / "file").read_bytes() == OLD
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root writes anywhere")
+@pytest.mark.parametrize("writer", WRITERS, ids=str)
+def test_an_output_that_is_write_protected_is_refused(writer, inputs, tmp_path, refused):
+    out = tmp_path / writer.out
+    file = out / writer.holds[0] if writer.holds else out
+    file.parent.mkdir(exist_ok=True)
+    file.write_bytes(OLD)
+    file.chmod(0o444)
+    assert "write-protected" in refused(writer, inputs, out)
+    file.chmod(0o644)
+    file.parent.chmod(0o555)
+    refused(writer, inputs, out)
+    file.parent.chmod(0o755)
+
+
+@pytest.mark.parametrize("writer", WRITERS, ids=str)
+def test_an_output_stays_as_it_was_until_all_is_written(writer, inputs, tmp_path, monkeypatch):
+    """Ctrl-C at the last moment."""
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    out = tmp_path / "out" / writer.out
+    for file in [out / name for name in writer.holds] or [out]:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(OLD)
+    before = contents(tmp_path)
+    monkeypatch.setattr(atomic_write, "_move_all", interrupted)
+    monkeypatch.setattr(Path, "replace", interrupted)
+    assert run(writer, inputs, out) == 130
+    after = contents(tmp_path)
+    kept = {name: after.pop(name) for name in list(after) if "/unfinished/" in name}
+    assert after == before
+    assert bool(kept) == (writer.command == "demo")
+
+
+@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_an_output_stays_when_the_command_is_ended(tmp_path, by):
+    out = tmp_path / "plan.csv"
+    out.write_bytes(OLD)
+    plan = [SADDLEWALK, "plan", "--speed", "1.2", "--strides", "1000000", "--out", str(out)]
+    with subprocess.Popen(plan) as process:
+        while not any(path.stat().st_size for path in tmp_path.glob(".new.*")):
+            assert process.poll() is None
+            time.sleep(0.01)
+        process.send_signal(by)
+    assert process.returncode == (-by if by == signal.SIGKILL else 130)
+    assert out.read_bytes() == OLD
+    assert (list(tmp_path.iterdir()) == [out]) == (by != signal.SIGKILL)
+
+
+def test_two_outputs_of_a_command_are_two_files(inputs, tmp_path, capsys):
+    one = str(tmp_path / "one")
+    for first, second in ((one, f"{tmp_path}/../{tmp_path.name}/one"), ("-", "-"), (one, one)):
+        words = ["calibrate", str(inputs["walk"]), "--out", first, "--header", second]
+        assert main(words) == 2
+        told = capsys.readouterr()
+        assert (told.out, told.err.count("\n")) == ("", 1)
+        assert "is the same file as --out" in told.err
+    assert not Path(one).exists()
+
+
+def shell(line: str, folder: Path) -> subprocess.CompletedProcess:
+    words = ["bash", "-c", line, str(SADDLEWALK)]
+    return subprocess.run(
+        words, cwd=folder, capture_output=True, text=True, check=False, timeout=60
+    )
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '"$0" supervise --in - --out states.csv <states.csv',
+        '"$0" supervise --in states.csv >>states.csv',
+        '"$0" supervise --in states.csv --out /dev/fd/7 7>>states.csv',
+    ],
+)
+def test_a_stream_from_or_to_a_file_is_that_file(line, mine, tmp_path):
+    before = contents(tmp_path)
+    done = shell(line, tmp_path / "inputs")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "is the same file as --in" in done.stderr
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize(
+    ("line", "start"),
+    [
+        ('"$0" plan --speed 1.2 --out /dev/stdout >>file', "old\nt_s,"),
+        ('"$0" plan --speed 1.2 --out /dev/fd/7 7>>file', "old\nt_s,"),
+        ('"$0" plan --speed 1.2 --out >(cat >>file); wait $!', "old\nt_s,"),
+        ('"$0" plan --speed 1.2 --out /dev/null', "old\n"),
+        ('"$0" supervise --in <(cat inputs/states.csv) >>file', "old\nt_s,"),
+        ('"$0" report inputs/walk.lcmlog --out - >>file', "old\n<!doctype html>"),
+        ('"$0" export inputs/walk.lcmlog --format mcap --out - >file', "\x89MCAP"),
+    ],
+)
+def test_what_is_open_already_is_written_to_and_not_replaced(line, start, mine, tmp_path):
+    file = tmp_path / "file"
+    file.write_text("old\n")
+    number = file.stat().st_ino
+    done = shell(line, tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert file.read_bytes().decode("latin-1").startswith(start)
+    assert file.stat().st_ino == number
+
+
+def test_a_file_that_is_replaced_keeps_its_permissions(tmp_path):
+    out = tmp_path / "plan.csv"
+    out.write_bytes(OLD)
+    out.chmod(0o640)
+    assert main(["plan", "--speed", "1.2", "--out", str(out)]) == 0
+    assert out.stat().st_mode & 0o777 == 0o640
+
+
+@pytest.mark.parametrize("suffix", ["docx", "", "csv"])
+def test_a_picture_of_no_known_format_is_refused_before_the_plan(inputs, capsys, suffix):
+    words = ["plan", "--schedule", str(inputs["schedule"]), "--picture", f"x.{suffix}"]
+    assert main(words) == 2
+    told = capsys.readouterr()
+    assert told.out == "" and ".png or .svg or .pdf" in told.err
