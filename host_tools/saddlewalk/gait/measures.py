@@ -15,6 +15,7 @@ from saddlewalk.gait.events import (
     step_pairs,
 )
 from saddlewalk.gait.recording import Recording
+from saddlewalk.gait.steadiness import unsteady
 
 # Means of a walking person, from a child of two to the tallest adult.
 HUMAN = {
@@ -70,7 +71,7 @@ def measure(recording: Recording) -> WalkMeasures:
         half_foot_m=_half_foot_m(recording, placed),
         missing=_missing(recording, bool(pairs), bool(high_m), grounded) | no_sway,
     )
-    _refuse_inhuman(measures)
+    _refuse_inhuman(measures, unsteady(recording, events, placed))
     return measures
 
 
@@ -86,13 +87,24 @@ def inhuman(quantity: str, value: float) -> str:
     low, high, unit = HUMAN[quantity]
     if low <= value <= high:
         return ""
+    if quantity == "step width" and low <= -value <= high:
+        return (
+            f"step width {value:.4g} m: left and right seem swapped; exchange the names of the "
+            "feet, or the sign of y, which points to the left"
+        )
     return f"{quantity} {value:.4g} {unit} is not human: {low:g} to {high:g} {unit}"
 
 
-def _refuse_inhuman(measures: WalkMeasures) -> None:
+def _refuse_inhuman(measures: WalkMeasures, reasons: list[str]) -> None:
+    """A speed that is not human is most often a unit, and makes all else look strange."""
     if np.isnan(measures.speed_m_s):
         raise UserError(f"{measures.source}: no walk: fewer than two heel strikes along +x")
-    refuse(measures.source, "walking speed", measures.speed_m_s)
+    speed = inhuman("walking speed", measures.speed_m_s)
+    if speed and (not reasons or abs(measures.speed_m_s) > HUMAN["walking speed"][1]):
+        raise UserError(f"{measures.source}: {speed}")
+    if reasons:
+        told = "; ".join([speed] * bool(speed) + reasons)
+        raise UserError(f"{measures.source}: not one steady straight walk: {told}")
     for quantity, values in (
         ("step length", measures.length_m),
         ("step width", measures.width_m),
