@@ -73,12 +73,12 @@ def inputs(status) -> str:
 
 def commands(status) -> str:
     """Who commands and since when not; after a walk has ended without commands, nobody does."""
-    age = _age(status, status.command_age_us)
-    if status.command_source != status.SOURCE_NONE:
-        return f"commands from {_name(SOURCES, status.command_source)} {age}"
     if status.command_age_us == status.NEVER:
         return "no commands yet"
-    return f"no commands now, the last {age}"
+    age = _age(status, status.command_age_us)
+    if status.command_source == status.SOURCE_NONE:
+        return f"no commands now, the last {age}"
+    return f"commands from {_name(SOURCES, status.command_source)} {age}"
 
 
 def transports(status) -> str:

@@ -1,6 +1,7 @@
-"""Commands that are vouched for: C and Python make the same codes, and the host takes no others."""
+"""Authenticated commands: C and Python make the same codes, and the host takes no others."""
 
 import random
+from pathlib import Path
 
 import can
 import pytest
@@ -10,7 +11,12 @@ from host_node import STANDING, Host
 from saddlewalk import paths
 from saddlewalk.errors import UserError
 from saddlewalk.transport import wire
-from saddlewalk.transport.authentication import Voucher, code_of
+from saddlewalk.transport.authentication import (
+    Authenticator,
+    code_of,
+    read_key,
+    write_new_key,
+)
 
 SEED = 20261122
 KEY = bytes.fromhex("2b7e151628aed2a6abf7158809cf4f3c")
@@ -51,10 +57,10 @@ class Guarded:
         return can.Message(arbitration_id=frame.id, is_extended_id=False, data=data)
 
 
-def speaking(guarded: Guarded) -> Voucher:
-    voucher = Voucher(KEY)
-    voucher.hear(guarded.session())
-    return voucher
+def speaking(guarded: Guarded) -> Authenticator:
+    authenticator = Authenticator(KEY)
+    authenticator.hear(guarded.session())
+    return authenticator
 
 
 def test_c_and_python_make_the_same_codes(codec):
@@ -75,19 +81,19 @@ def test_c_and_python_make_the_same_codes(codec):
         assert (told["FRESHNESS"], told["COUNTER"]) == (freshness, command.data[1] & 15)
 
 
-def test_what_is_vouched_for_is_obeyed_and_nothing_else(codec):
+def test_what_is_authenticated_is_accepted_and_nothing_else(codec):
     guarded, sender = Guarded(codec), wire.Sender()
-    voucher = speaking(guarded)
+    authenticator = speaking(guarded)
     for number in range(40):
-        assert guarded.obeys(*voucher.frames(sender, **WALK)), number
+        assert guarded.obeys(*authenticator.frames(sender, **WALK)), number
     assert not guarded.obeys(sender.frame("COMMAND", **WALK))
     assert (guarded.receiver.bad_code, guarded.receiver.accepted) == (1, 80)
 
 
 def test_a_replay_is_refused_in_its_session_and_in_the_next(codec):
     guarded, sender = Guarded(codec), wire.Sender()
-    voucher = speaking(guarded)
-    recorded = [voucher.frames(sender, **WALK) for _ in range(22)]
+    authenticator = speaking(guarded)
+    recorded = [authenticator.frames(sender, **WALK) for _ in range(22)]
     for number in (2, 6, 10, 14):
         assert guarded.obeys(*recorded[number])
     assert not guarded.obeys(*recorded[2])  # 16 before the next, so its alive counter is in step
@@ -96,8 +102,8 @@ def test_a_replay_is_refused_in_its_session_and_in_the_next(codec):
     assert [guarded.obeys(*recorded[number]) for number in (18, 19, 20)] == [False, False, True]
     codec.saddle_wire_open_session(guarded.receiver, 5)
     assert not guarded.obeys(*recorded[21])
-    voucher.hear(guarded.session())
-    assert guarded.obeys(*voucher.frames(sender, **WALK))
+    authenticator.hear(guarded.session())
+    assert guarded.obeys(*authenticator.frames(sender, **WALK))
 
 
 def test_every_changed_bit_is_refused(codec):
@@ -137,11 +143,11 @@ def key_file(tmp_path):
 def test_the_host_obeys_who_has_the_key_and_counts_who_has_not(key_file):
     with Host("--lcm=none", "--clock=lockstep", "--command-key", str(key_file)) as host:
         assert f"; commands: by CAN, authenticated with the key in {key_file}\n" in host.first_line
-        voucher = Voucher(KEY)
+        authenticator = Authenticator(KEY)
         host.measure(STANDING)
         for frame in host.tick_frames():
-            voucher.hear(frame)
-        for frame in voucher.frames(host.sender, **WALK):
+            authenticator.hear(frame)
+        for frame in authenticator.frames(host.sender, **WALK):
             host.bus.send(frame)
         host.measure(STANDING)
         assert host.tick()["INPUTS"]["COMMAND_AGE"] == 80 * 0
@@ -157,7 +163,7 @@ def test_after_a_silence_there_is_a_new_session_for_whoever_comes(key_file):
         heard = None
         for number in range(16):
             if number % 8 == 1:
-                newcomer = Voucher(KEY)  # counts from 1
+                newcomer = Authenticator(KEY)  # counts from 1
                 newcomer.hear(heard)
                 for frame in newcomer.frames(host.sender, **WALK):
                     host.bus.send(frame)
@@ -185,6 +191,27 @@ def test_a_key_that_is_no_secret_or_no_key_is_one_line(tmp_path, text, mode):
         host.stop()
 
 
+def test_both_sides_refuse_the_same_key_files(tmp_path, key_file):
+    assert read_key(key_file) == KEY
+    for text, mode in ((KEY.hex(), 0o640), (KEY.hex()[:-1], 0o600), ("key" * 11, 0o600)):
+        path = tmp_path / "other"
+        path.write_text(text)
+        path.chmod(mode)
+        with pytest.raises(UserError, match=f"--command-key {path}: give a file with 32 hexa"):
+            read_key(path)
+    with pytest.raises(UserError, match="--command-key /no/key: give a file"):
+        read_key(Path("/no/key"))
+
+
+def test_a_new_key_is_new_and_its_owners_alone(tmp_path):
+    for name in ("one", "two"):
+        write_new_key(tmp_path / name)
+        assert (tmp_path / name).stat().st_mode & 0o777 == 0o600
+    assert read_key(tmp_path / "one") != read_key(tmp_path / "two")
+    with pytest.raises(FileExistsError):
+        write_new_key(tmp_path / "one")
+
+
 def test_a_key_of_another_length_is_refused():
     with pytest.raises(UserError, match="has 15 bytes: give 16"):
-        Voucher(bytes(15))
+        Authenticator(bytes(15))

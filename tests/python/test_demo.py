@@ -240,6 +240,59 @@ def test_emulate_gives_up_on_firmware_that_does_not_hear_it(ports, capsys, monke
     assert told.count("\n") == 1 and "not do as commanded" in told and "--lcm" in told
 
 
+@pytest.fixture
+def key_file(tmp_path) -> str:
+    from saddlewalk.transport.authentication import write_new_key
+
+    write_new_key(tmp_path / "command.key")
+    return str(tmp_path / "command.key")
+
+
+@pytest.mark.parametrize("clock", ["lockstep", "realtime"])
+def test_demo_with_a_new_key_commands_by_authenticated_frames_alone(tmp_path, ports, capsys, clock):
+    from saddlewalk.transport.lcm_types import status_t
+
+    options = ["--clock", clock, "--command-key", "--duration", "4", "--speed", "1.2"]
+    assert main(["demo", "--out", str(tmp_path), *ports, *options]) == 0
+    assert "commands: authenticated, by CAN" in capsys.readouterr().out
+    assert "walking" in [row["mode"] for row in rows(tmp_path)]
+    with can.CanutilsLogReader(tmp_path / "walk.candump.log") as log:
+        frames = [frame.arbitration_id for frame in log]
+    assert frames.count(0x0FF) == frames.count(0x100) >= 4 / TICK_S - 4
+    log = lcm.EventLog(str(tmp_path / "walk.lcmlog"), "r")
+    heard = list(log)
+    log.close()
+    assert "SADDLEWALK_COMMAND" not in {event.channel for event in heard}
+    told = [status_t.decode(event.data) for event in heard if event.channel == "SADDLEWALK_STATUS"]
+    last = told[-1]
+    assert (last.codes_demanded, last.command_source) == (1, last.SOURCE_CAN)
+    assert last.commands_obeyed >= 4 / TICK_S - 4 and last.frames_bad_code == 0
+
+
+def test_emulate_commands_with_the_key_of_the_firmware(ports, capsys, key_file, monkeypatch):
+    from saddlewalk.emulation import exoskeleton
+    from saddlewalk.emulation.host import running_host
+
+    walk = ["emulate", *ports, "--duration", "2"]
+    other = Path(key_file).with_name("other.key")
+    other.write_text("0" * 32)
+    other.chmod(0o600)
+    with running_host(f"--can={ports[1]}", f"--lcm={ports[3]}", f"--command-key={key_file}"):
+        for options in ([], ["--command-key", str(other)]):
+            with monkeypatch.context() as patch:
+                patch.setattr(exoskeleton, "START_TICKS", 5)
+                assert main([*walk, *options]) == 2
+            told = capsys.readouterr().err
+            assert told.count("\n") == 1 and "give both the same --command-key" in told
+        assert main([*walk, "--command-key", key_file]) == 0
+
+
+def test_a_controller_demands_no_codes(tmp_path, capsys):
+    options = ["--firmware", "qemu-m4", "--command-key", "--out", str(tmp_path)]
+    assert main(["demo", *options]) == 2
+    assert "--command-key: not with --firmware qemu-m4, leave it out" in capsys.readouterr().err
+
+
 def test_emulate_ends_with_status_1_after_a_fall(ports, capsys):
     from saddlewalk.emulation.host import running_host
 

@@ -4,6 +4,7 @@ import argparse
 import contextlib
 import math
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,7 +20,7 @@ from saddlewalk.commands.emulate import (
 from saddlewalk.config import host_arguments, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.logs.run_files import CAN_LOG, LCM_LOG, PICTURE, TABLE, run_names
-from saddlewalk.outputs import OutputFolder, add_output
+from saddlewalk.outputs import OutputFolder, add_input, add_output
 
 if TYPE_CHECKING:
     from saddlewalk.atomic_write import RunFolder
@@ -39,6 +40,7 @@ LATE_SHARE_MAX = 0.05
 Check = tuple[bool, str]  # good, and in words
 
 HOST, EMULATED = "host", "qemu-m4"
+NEW_KEY = ""  # of --command-key without a file
 
 
 def add_parser(subparsers: Any) -> None:
@@ -65,6 +67,15 @@ def add_parser(subparsers: Any) -> None:
         duration_s=DURATION_S,
         push=f"{PUSH_N_S_KG:.3f} N s/kg to the left at {PUSH_TIME_S} s",
     )
+    add_input(
+        parser,
+        "--command-key",
+        nargs="?",
+        const=NEW_KEY,
+        metavar="FILE",
+        help="authenticate the commands with the key in FILE, or with a new key: "
+        "docs/authentication.md",
+    )
     parser.set_defaults(run=run, clock=None)
 
 
@@ -74,22 +85,30 @@ def run(args: argparse.Namespace) -> int:
         args.push = [(PUSH_N_S_KG * config.body_mass_kg, PUSH_TIME_S, PUSH_DIRECTION_DEG)]
     args.clock = _clock(args)
     lcm = _open_lcm(args.lcm)
+    with _key_file(args.command_key) as args.command_key:
+        return _walk(args, config, lcm)
+
+
+def _walk(args: argparse.Namespace, config: Any, lcm: Any) -> int:
     from saddlewalk.atomic_write import RunFolder
     from saddlewalk.emulation.exoskeleton import Exoskeleton
     from saddlewalk.emulation.wearer import Noise
     from saddlewalk.pictures.walk import draw_walk
     from saddlewalk.planning.schedule import schedule_of
+    from saddlewalk.transport.authentication import read_key
     from saddlewalk.transport.bus import describe
 
+    key = read_key(args.command_key) if args.command_key else None
     wearer = wearer_of(args, config, Noise())
     schedule = schedule_of(speeds_of(args, SPEEDS), math.radians(args.hs_angle))
     firmware = _host if args.firmware == HOST else _controller
     with RunFolder("--out", args.out, run_names()) as run_folder:
         walking = firmware(args, config, lcm, run_folder)
         with walking as (bus, recorder), _display(args, lcm) as display:
-            print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
+            authenticated = "; commands: authenticated, by CAN" if key else ""
+            print(f"CAN: {describe(bus)}; clock: {args.clock}{authenticated}", flush=True)
             observers = [recorder, events_printer(wearer), display]
-            exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers)
+            exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers, key=key)
             exoskeleton.run(args.clock, args.duration)
         checks = _checks(wearer, exoskeleton, recorder)
         if schedule(args.duration).speed_m_s == 0:
@@ -104,12 +123,30 @@ def _clock(args: argparse.Namespace) -> str:
     """What was asked for, or what the firmware walks by; a controller only knows lockstep here."""
     if args.firmware == HOST:
         return args.clock or "realtime"
-    for option, value, default in (("clock", args.clock, "lockstep"), ("can", args.can, "auto")):
+    given = (
+        ("clock", args.clock, "lockstep"),
+        ("can", args.can, "auto"),
+        ("command-key", args.command_key, None),
+    )
+    for option, value, default in given:
         if value not in (None, default):
-            raise UserError(
-                f"--{option} {value}: not with --firmware {args.firmware}, leave it out"
-            )
+            words = f"--{option} {value}".rstrip()
+            raise UserError(f"{words}: not with --firmware {args.firmware}, leave it out")
     return "lockstep"
+
+
+@contextlib.contextmanager
+def _key_file(given: str | None) -> Iterator[Path | None]:
+    """The file of --command-key; a new key's is removed at the end."""
+    from saddlewalk.transport.authentication import write_new_key
+
+    if given != NEW_KEY:
+        yield None if given is None else Path(given)
+        return
+    with tempfile.TemporaryDirectory(prefix="saddlewalk-") as folder:
+        path = Path(folder) / "command.key"
+        write_new_key(path)
+        yield path
 
 
 @contextlib.contextmanager
@@ -122,6 +159,7 @@ def _host(
 
     options = [f"--can={args.can}", f"--clock={args.clock}", *host_arguments(config)]
     options += [f"--lcm={args.lcm}"] if args.lcm else []
+    options += [f"--command-key={args.command_key}"] if args.command_key else []
     with open_bus(args.can) as bus:
         _refuse_company(bus, lcm)
         with _recorder(run_folder, lcm) as recorder, running_host(*options):

@@ -38,6 +38,13 @@ def add_parser(subparsers: Any) -> None:
         help="TOML with what happens to the frames and commands, all at once: examples/faults.toml "
         "explains it",
     )
+    add_input(
+        parser,
+        "--command-key",
+        type=Path,
+        metavar="FILE",
+        help="authenticate the commands with the firmware's key: docs/authentication.md",
+    )
     parser.set_defaults(run=run)
 
 
@@ -103,9 +110,11 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.emulation.wearer import Noise
     from saddlewalk.faults.live import faulty
     from saddlewalk.planning.schedule import schedule_of
+    from saddlewalk.transport.authentication import read_key
     from saddlewalk.transport.bus import describe, open_bus
     from saddlewalk.transport.lcmbus import open_lcm
 
+    key = read_key(args.command_key) if args.command_key else None
     wearer = wearer_of(args, load_config(args), Noise().scaled(args.noise_scale))
     schedule = schedule_of(speeds_of(args, [(0.0, SPEED_M_S)]), math.radians(args.hs_angle))
     lcm = open_lcm(args.lcm)
@@ -116,7 +125,7 @@ def run(args: argparse.Namespace) -> int:
         ways = faulty(bus, lcm, happenings, args.seed) if happenings else (bus, lcm)
         start = "start saddlewalk-host there with the same --clock and --lcm"
         exoskeleton = Exoskeleton(
-            ways[0], wearer, schedule, ways[1], [events], fresh=False, if_silent=start
+            ways[0], wearer, schedule, ways[1], [events], fresh=False, if_silent=start, key=key
         )
         exoskeleton.run(args.clock, args.duration)
     print(summary(wearer, exoskeleton))

@@ -21,7 +21,8 @@ from saddlewalk.emulation.wearer import (
 from saddlewalk.errors import UserError
 from saddlewalk.planning.schedule import Schedule
 from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages, TickReader, next_tick
-from saddlewalk.transport.wire import Sender
+from saddlewalk.transport.authentication import Authenticator
+from saddlewalk.transport.wire import Sender, identifier
 from saddlewalk.verdict import level_name
 
 WAKE_UP_S = 0.01  # realtime: measurements at 100 Hz
@@ -95,6 +96,7 @@ class Exoskeleton:
     A walk in progress is ended first: the own one begins when the firmware plans to stand.
     fresh: the firmware has been started for this walk and has heard nobody yet.
     if_silent: what the user can do when no firmware answers.
+    key: authenticates the commands, which then go by CAN alone.
     """
 
     def __init__(
@@ -106,6 +108,7 @@ class Exoskeleton:
         observers: Iterable[Observer] = (),
         fresh: bool = True,
         if_silent: str = "",
+        key: bytes | None = None,
     ) -> None:
         self.reader = TickReader()
         self.frames_sent = 0
@@ -116,6 +119,8 @@ class Exoskeleton:
         self._observers = tuple(observers)
         self._fresh, self._if_silent = fresh, if_silent
         self._sender = Sender()
+        self._authenticator = None if key is None else Authenticator(key)
+        self._codes_demanded = False
         self._begun = False
         self._unheeded = 0  # ticks in a row
         self._pushed_n_s = 0j
@@ -143,7 +148,7 @@ class Exoskeleton:
         wake_up = 0
         while self._wearer.time_s < duration_s - STEP_S / 2:
             if wake_up % round(TICK_S / WAKE_UP_S) == 0:
-                self._publish_command()
+                self._command_in_real_time()
             self._advance(round(WAKE_UP_S / STEP_S))
             self._send_measurement()
             self._publish_truth()
@@ -155,7 +160,7 @@ class Exoskeleton:
             elif time.monotonic() - heard_s > SILENCE_S:
                 raise self._silent()
         self._begun = False
-        self._publish_command()
+        self._command_in_real_time()
 
     def _silent(self) -> UserError:
         silent = f"the firmware has been silent for {SILENCE_S:g} s on {self._bus.channel_info}"
@@ -188,6 +193,9 @@ class Exoskeleton:
     def _hear(self, frame: can.Message) -> Messages | None:
         for observer in self._observers:
             observer.frame(frame)
+        self._codes_demanded |= frame.arbitration_id == identifier("SESSION")
+        if self._authenticator:
+            self._authenticator.hear(frame)
         return self.reader.feed(frame)
 
     def _take(self, messages: Messages) -> None:
@@ -197,16 +205,20 @@ class Exoskeleton:
         self.ticks += 1
         self._unheeded = self._unheeded + 1 if self._is_unheeded(plan) else 0
         if self._unheeded > START_TICKS:
-            raise UserError(
-                f"the firmware on {self._bus.channel_info} answers but does not do as commanded: "
-                "give both the same --clock and --lcm"
-            )
+            raise self._disobedient()
         self.health = messages["HEALTH"]
         self.mode = plan.mode if plan else None
         self._wearer.follow(plan)
         tick = Tick(self._wearer.time_s, messages, plan)
         for observer in self._observers:
             observer.tick(tick, self._wearer)
+
+    def _disobedient(self) -> UserError:
+        options = "--command-key" if self._codes_demanded else "--clock and --lcm"
+        return UserError(
+            f"the firmware on {self._bus.channel_info} answers but does not do as commanded: "
+            f"give both the same {options}"
+        )
 
     def _is_unheeded(self, plan: Plan | None) -> bool:
         """The firmware does not stand before the walk, or stands though it is to walk."""
@@ -221,8 +233,7 @@ class Exoskeleton:
         for observer in self._observers:
             observer.poll()
 
-    def _send(self, name: str, **signals: float) -> None:
-        frame = self._sender.frame(name, **signals)
+    def _send(self, frame: can.Message) -> None:
         frame.is_rx, frame.timestamp = False, time.time()
         try:
             self._bus.send(frame)
@@ -239,16 +250,27 @@ class Exoskeleton:
         return MODE_WALK if walk else MODE_STAND, asked.speed_m_s, asked.heel_strike_rad
 
     def _send_command_frame(self) -> None:
-        mode, speed_m_s, heel_strike_rad = self._command()
-        self._send("COMMAND", MODE=mode, SPEED=speed_m_s, HEEL_STRIKE=heel_strike_rad)
+        """Authenticated, there is none until the firmware has opened a session."""
+        names = ("MODE", "SPEED", "HEEL_STRIKE")
+        command = dict(zip(names, self._command(), strict=True))
+        if self._authenticator:
+            frames = self._authenticator.frames(self._sender, **command)
+        else:
+            frames = [self._sender.frame("COMMAND", **command)]
+        for frame in frames:
+            self._send(frame)
 
     def _send_measurement(self) -> None:
         measured: Measurement = self._wearer.measure()
         velocity = measured.velocity_m_s
-        self._send("MEASURED_COM", HEIGHT=measured.height_m, VX=velocity.real, VY=velocity.imag)
+        com = {"HEIGHT": measured.height_m, "VX": velocity.real, "VY": velocity.imag}
+        self._send(self._sender.frame("MEASURED_COM", **com))
         for side, name in ((LEFT, "MEASURED_LEFT"), (RIGHT, "MEASURED_RIGHT")):
-            foot = measured.feet_m[side]
-            self._send(name, CONTACT=measured.contact[side], X=foot.real, Y=foot.imag)
+            foot, contact = measured.feet_m[side], measured.contact[side]
+            self._send(self._sender.frame(name, CONTACT=contact, X=foot.real, Y=foot.imag))
+
+    def _command_in_real_time(self) -> None:
+        (self._send_command_frame if self._authenticator else self._publish_command)()
 
     def _publish_command(self) -> None:
         from saddlewalk.transport.lcm_types import command_t

@@ -1,25 +1,49 @@
-"""Commands that are vouched for, as `docs/authentication.md` lays down: the commanding side.
+"""Authenticated commands, as `docs/authentication.md` describes them: the commanding side.
 
-Needs the extra `authentication`. The counterpart of the guard in `<saddlewalk/wire.h>`.
+The counterpart of the guard in `<saddlewalk/wire.h>`.
 """
 
+import re
+import secrets
 import struct
+from pathlib import Path
 
 import can
+from cryptography.hazmat.primitives.ciphers.algorithms import AES
+from cryptography.hazmat.primitives.cmac import CMAC
 
 from saddlewalk.errors import UserError
-from saddlewalk.paths import install_command
 from saddlewalk.transport.wire import Receiver, Sender, identifier
 
 KEY_BYTES = 16
 FRESHNESS_MAX = 65535
 
 
-class Voucher:
+def read_key(path: Path) -> bytes:
+    """The key in a file, under the conditions of saddlewalk-host's --command-key."""
+    try:
+        text, mode = path.read_text().strip(), path.stat().st_mode
+    except (OSError, UnicodeDecodeError):
+        text, mode = "", 0
+    if not re.fullmatch(f"[0-9a-fA-F]{{{2 * KEY_BYTES}}}", text) or mode & 0o077:
+        raise UserError(
+            f"--command-key {path}: give a file with {2 * KEY_BYTES} hexadecimal digits that only "
+            "its owner may read (chmod 600)"
+        )
+    return bytes.fromhex(text)
+
+
+def write_new_key(path: Path) -> None:
+    """A random key in a new file that only its owner may read."""
+    path.touch(mode=0o600, exist_ok=False)
+    path.write_text(secrets.token_hex(KEY_BYTES) + "\n")
+
+
+class Authenticator:
     """Makes each COMMAND together with the COMMAND_CODE that goes before it.
 
-    It speaks in the session that the firmware's SESSION frames tell: give hear() every frame that
-    is received.
+    The codes are for the session in the firmware's SESSION frames: give hear() every frame that is
+    received.
     """
 
     def __init__(self, key: bytes) -> None:
@@ -51,13 +75,6 @@ class Voucher:
 
 def code_of(key: bytes, session: int, freshness: int, command: can.Message) -> int:
     """The first 4 bytes of the AES-128-CMAC of session, freshness, identifier and frame."""
-    try:
-        from cryptography.hazmat.primitives.ciphers.algorithms import AES
-        from cryptography.hazmat.primitives.cmac import CMAC
-    except ImportError as error:
-        raise UserError(
-            f"codes of commands need cryptography: {install_command('authentication')}"
-        ) from error
     cmac = CMAC(AES(key))
     cmac.update(struct.pack("<IHH", session, freshness, command.arbitration_id))
     cmac.update(bytes(command.data))
