@@ -63,7 +63,7 @@ def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys
         "stopping",
         "standing",
     ]
-    speeds = {float(row["time_s"]): float(row["plan_speed_m_s"]) for row in walk}
+    speeds = {float(row["t_s"]): float(row["plan_speed_m_s"]) for row in walk}
     assert len(walk) == round(22 / TICK_S) == len(speeds)
     at = [speeds[time_s] for time_s in (0.96, 6.0, 10.0, 21.92)]
     assert at == pytest.approx([0.0, 0.8, 1.2, 0.0], abs=1e-4)  # the wire's resolution
@@ -109,7 +109,7 @@ def test_a_fall_is_told_and_is_not_sound(tmp_path, ports, capsys):
     assert {path.name for path in tmp_path.iterdir()} == FILES
     walk = rows(tmp_path)
     assert walk[-1]["fallen"] == "1"
-    alarms = {row["level"] for row in walk if row["fallen"] == "0" and float(row["time_s"]) > 3}
+    alarms = {row["level"] for row in walk if row["fallen"] == "0" and float(row["t_s"]) > 3}
     assert "unstable" in alarms and {row["reason"] for row in walk} >= {"none", "no_step"}
 
 
@@ -147,7 +147,7 @@ def test_firmware_and_wearer_have_the_body_that_was_asked_for(tmp_path, ports):
     walk = rows(tmp_path)
     standing_m = math.sqrt((0.6 * 1.5) ** 2 - 0.11**2)
     assert float(walk[0]["true_com_z_m"]) == pytest.approx(standing_m, abs=1e-4)
-    steady = [row for row in walk if 6 < float(row["time_s"]) < 11]
+    steady = [row for row in walk if 6 < float(row["t_s"]) < 11]
     widths = [float(row["plan_left_y_m"]) - float(row["plan_right_y_m"]) for row in steady]
     assert sorted(widths)[len(widths) // 2] == pytest.approx(0.13, abs=0.01)
     assert all(0.8 < float(row["plan_com_z_m"]) < 0.95 for row in walk[1:])

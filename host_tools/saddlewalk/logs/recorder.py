@@ -32,7 +32,7 @@ CHANNELS = tuple(
 
 _POINTS = "com_x_m com_y_m com_z_m left_x_m left_y_m left_z_m right_x_m right_y_m right_z_m".split()
 COLUMNS = (
-    "time_s mode step_count phase theta_rad support".split()
+    "t_s mode step_count phase theta_rad support".split()
     + [f"plan_{name}" for name in _POINTS]
     + "plan_speed_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m v_comp_m_s".split()
     + "gravity_x_n gravity_y_n".split()

@@ -61,7 +61,7 @@ def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push], config: An
     whole, above, speed, height, scores, level, margins = figure.subplots(
         7, 1, height_ratios=(0.6, 1.7, 0.8, 0.8, 0.9, 0.6, 0.9)
     )
-    shown = _shown(walk["time_s"], pushes)
+    shown = _shown(walk["t_s"], pushes)
     closely = {name: column[shown] for name, column in walk.items()}
     figure.suptitle("A walk: the plan, and the wearer who follows it")
     _draw_whole(whole, walk, closely)
@@ -107,7 +107,7 @@ def _shown(time_s: np.ndarray, pushes: Sequence[Push]) -> np.ndarray:
 
 
 def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], config: Any) -> None:
-    for index in range(len(walk["time_s"])):
+    for index in range(len(walk["t_s"])):
         bos_m = _bos(walk, index, config)
         axes.add_patch(Polygon(bos_m, color=SKY, alpha=0.10, lw=0))
         axes.add_patch(Polygon(bos_m, fill=False, ec=SKY, alpha=0.35, lw=0.5))
@@ -156,7 +156,7 @@ def _lateral_limits(walk: Columns) -> tuple[float, float]:
 
 
 def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
-    index = int(np.argmin(np.abs(walk["time_s"] - push.time_s)))
+    index = int(np.argmin(np.abs(walk["t_s"] - push.time_s)))
     at = complex(walk["true_com_x_m"][index], walk["true_com_y_m"][index])
     tail = at - 0.4 * push.vector_n_s / abs(push.vector_n_s)
     axes.annotate(
@@ -172,10 +172,10 @@ def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
 
 
 def _draw_height(axes: Axes, walk: Columns) -> None:
-    axes.plot(walk["time_s"], walk["plan_com_z_m"], "k--o", ms=3, lw=1.0, label="planned")
-    axes.plot(walk["time_s"], walk["true_com_z_m"], "-o", color=BLUE, ms=3, lw=1.6, label="true")
+    axes.plot(walk["t_s"], walk["plan_com_z_m"], "k--o", ms=3, lw=1.0, label="planned")
+    axes.plot(walk["t_s"], walk["true_com_z_m"], "-o", color=BLUE, ms=3, lw=1.6, label="true")
     axes.set(ylabel="height of\nthe CoM (m)")
-    axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
+    axes.set_xlim(walk["t_s"][0], walk["t_s"][-1])
 
 
 def _draw_lines(
@@ -184,11 +184,11 @@ def _draw_lines(
     """Lines over the whole walk; modes: name the shades, which tell what the plan is doing."""
     styles = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."))
     for (name, label), (colour, style) in zip(names, styles, strict=False):
-        axes.plot(walk["time_s"], walk[name], color=colour, ls=style, lw=1.6, label=label)
+        axes.plot(walk["t_s"], walk[name], color=colour, ls=style, lw=1.6, label=label)
     axes.axhline(0, color="0.4", lw=0.8)
-    axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
+    axes.set_xlim(walk["t_s"][0], walk["t_s"][-1])
     for mode, shade in SHADES.items():
-        for start_s, end_s in _spans(walk["time_s"], walk["mode"] == mode):
+        for start_s, end_s in _spans(walk["t_s"], walk["mode"] == mode):
             axes.axvspan(start_s, end_s, color=shade, lw=0, zorder=0)
         if modes:
             axes.fill_between([], [], color=shade, label=MODES[mode])
@@ -198,11 +198,11 @@ def _draw_level(axes: Axes, walk: Columns) -> None:
     """A lane for each level, filled while it was announced."""
     for lane, (name, style) in enumerate(LANES.items()):
         there = walk["level"] == LEVELS.index(name)
-        spans = [(start_s, end_s - start_s) for start_s, end_s in _spans(walk["time_s"], there)]
+        spans = [(start_s, end_s - start_s) for start_s, end_s in _spans(walk["t_s"], there)]
         axes.broken_barh(spans, (lane - 0.4, 0.8), lw=0, **style)
     axes.set(ylabel="level", ylim=(-0.5, len(LANES) - 0.5))
     axes.set_yticks(range(len(LANES)), LANES)
-    axes.set_xlim(walk["time_s"][0], walk["time_s"][-1])
+    axes.set_xlim(walk["t_s"][0], walk["t_s"][-1])
 
 
 def _spans(time_s: np.ndarray, there: np.ndarray) -> list[tuple[float, float]]:
