@@ -135,7 +135,7 @@ static void publish(saddle_runner_t *runner, const saddle_input_t *input,
     const saddlewalk_status_t status = saddle_report_status(&report);
     const saddlewalk_health_t health = saddle_report_health(&report, output);
     if (runner->timing.ticks % CONFIG_TICKS == 0) {
-        saddle_lcm_publish_config(runner->lcm, &runner->context.config, input->time_us,
+        saddle_lcm_publish_config(runner->lcm, &runner->context.model.config, input->time_us,
                                   runner->lockstep);
     }
     saddle_lcm_publish(runner->lcm, input, output, &status, &health);

@@ -109,6 +109,18 @@ def _fill(target: Any, measurement: Measurement) -> None:
             foot.cop_m.x, foot.cop_m.y = cop_m
 
 
+def model_of(config: Any) -> Any:
+    """The saddle_model_t of a configuration: with what saddle_init() derives from it."""
+    model = ffi().new("saddle_model_t *")
+    library().saddle_model_init(model, config)
+    return model
+
+
+def body_of(config: Any) -> Any:
+    """The saddle_body_t of a configuration. A copy: a field of a struct does not keep it alive."""
+    return ffi().new("saddle_body_t *", model_of(config).body)[0]
+
+
 def bos_polygon(config: Any, cops_m: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
     """The base of support of a left and a right CoP, as a polygon in their frame."""
     cops = ffi().new("saddle_vec2_t[2]", [(float(x), float(y)) for x, y in cops_m])

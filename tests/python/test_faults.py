@@ -28,7 +28,7 @@ from saddlewalk.transport import wire
 
 EXAMPLE = Path(__file__).parents[2] / "examples/faults.toml"
 CONFIG = configuration({})
-BODY = core.library().saddle_body(CONFIG)
+BODY = core.body_of(CONFIG)
 FRAMES = 400
 STANDING = {
     "COMMAND": {"MODE": 0, "SPEED": 0.0, "HEEL_STRIKE": 0.0},

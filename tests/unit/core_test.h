@@ -52,6 +52,14 @@ static inline saddle_config_t paper_config(void)
     return saddle_config_default(1.79f, 63.3f);
 }
 
+/** The model of a configuration as it is now: a test may change it between calls. */
+static inline const saddle_model_t *model_of(const saddle_config_t *config)
+{
+    static saddle_model_t model;
+    saddle_model_init(&model, config);
+    return &model;
+}
+
 /** xorshift32: state must not be 0. */
 static inline uint32_t random_bits(uint32_t *state)
 {

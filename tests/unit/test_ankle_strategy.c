@@ -12,7 +12,7 @@ static saddle_body_t body;
 void setUp(void)
 {
     config = paper_config();
-    body = saddle_body(&config);
+    body = model_of(&config)->body;
 }
 
 void tearDown(void) {}
@@ -20,13 +20,13 @@ void tearDown(void) {}
 static saddle_quarter_t quarter_at(float speed)
 {
     const float length = (float)(0.1802 * (double)speed + 0.1351);
-    return saddle_quarter(&config, SADDLE_LEFT, length, saddle_step_width_m(&config, speed), speed);
+    return saddle_quarter(model_of(&config), SADDLE_LEFT, length, saddle_step_width_m(model_of(&config), speed), speed);
 }
 
 static saddle_transition_t transition_at(float speed, double heel_strike_deg)
 {
     const saddle_quarter_t quarter = quarter_at(speed);
-    return saddle_transition(&config, &body, &quarter, (float)(heel_strike_deg * DEGREE));
+    return saddle_transition(model_of(&config), &quarter, (float)(heel_strike_deg * DEGREE));
 }
 
 static void test_toe_off_angles_of_the_paper_s_speeds(void)
@@ -68,7 +68,7 @@ static saddle_ankle_state_t ankle_at(const saddle_transition_t *transition, floa
                                      bool before)
 {
     saddle_ankle_state_t ankle;
-    saddle_ankle(&config, &body, transition, since_strike_s, before, &ankle);
+    saddle_ankle(model_of(&config), transition, since_strike_s, before, &ankle);
     return ankle;
 }
 
@@ -164,7 +164,7 @@ static void test_cycloid_has_the_human_amplitude_and_its_slope(void)
         const double excursion = 0.02656 * (double)speed + 0.002575;
         for (int k = -20; k <= 20; k++) {
             const double angle = 0.025 * PI * k;
-            const saddle_sample_t height = saddle_cycloid(&body, &quarter, (float)angle);
+            const saddle_sample_t height = saddle_cycloid(model_of(&config), &quarter, (float)angle);
             const double z = via_point - 0.5 * excursion * (1.0 - cos(2.0 * angle));
             const double slope =
                 -excursion * sin(2.0 * angle) * 0.5 * PI / (double)quarter.length_m;
@@ -177,7 +177,7 @@ static void test_cycloid_has_the_human_amplitude_and_its_slope(void)
 static saddle_ankle_state_t ankle_for(float leg_m, bool toe_off, bool *limited)
 {
     saddle_ankle_state_t ankle;
-    *limited = !saddle_ankle_for_leg(&config, &body, leg_m, toe_off, &ankle);
+    *limited = !saddle_ankle_for_leg(model_of(&config), leg_m, toe_off, &ankle);
     return ankle;
 }
 

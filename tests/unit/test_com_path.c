@@ -14,7 +14,7 @@ static const float SPEEDS[] = {0.01f, 0.3f, 0.7f, 1.0f, 1.2f, 1.6f, 1.9f};
 static saddle_quarter_t quarter_at(float speed, saddle_side_t stance)
 {
     const float length = (float)(0.1802 * (double)speed + 0.1351);
-    return saddle_quarter(&config, stance, length, saddle_step_width_m(&config, speed), speed);
+    return saddle_quarter(model_of(&config), stance, length, saddle_step_width_m(model_of(&config), speed), speed);
 }
 
 static void test_path_is_the_equation_s(void)

@@ -14,7 +14,7 @@ void setUp(void)
     config = paper_config();
     config.ankle_work_factor = 1.0f;
     config.bos_factor = 1.0f;
-    body = saddle_body(&config);
+    body = model_of(&config)->body;
 }
 
 void tearDown(void) {}
@@ -28,7 +28,7 @@ static float excess_stop(const posture_t *posture)
 {
     const saddle_bos_t bos = saddle_bos(posture->cop_m, config.cop_range_m, config.bos_factor);
     float excess_j;
-    TEST_ASSERT_TRUE(saddle_excess_stop_j(&config, &body, posture->cop_m, &bos, &posture->state,
+    TEST_ASSERT_TRUE(saddle_excess_stop_j(model_of(&config), posture->cop_m, &bos, &posture->state,
                                           &excess_j));
     return excess_j;
 }
@@ -37,7 +37,7 @@ static float excess_track(const posture_t *posture)
 {
     const saddle_bos_t bos = saddle_bos(posture->cop_m, config.cop_range_m, config.bos_factor);
     float excess_j;
-    TEST_ASSERT_TRUE(saddle_excess_track_j(&config, &body, posture->cop_m, &bos, &posture->state,
+    TEST_ASSERT_TRUE(saddle_excess_track_j(model_of(&config), posture->cop_m, &bos, &posture->state,
                                            &posture->planned, &excess_j));
     return excess_j;
 }
@@ -138,17 +138,17 @@ static void test_plan_without_deviation_has_only_the_way_to_the_border(void)
 
 static void test_ankles_of_the_paper_s_body_absorb_six_joules(void)
 {
-    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 6.084, saddle_ankle_work_j(&config, &body));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 6.084, model_of(&config)->body.ankle_work_j);
     TEST_ASSERT_DOUBLE_WITHIN(2e-6, 63.3 * GRAVITY * 0.01 / PENDULUM,
-                              saddle_ankle_work_j(&config, &body));
+                              model_of(&config)->body.ankle_work_j);
     config.ankle_work_factor = 2.5f;
     TEST_ASSERT_DOUBLE_WITHIN(5e-6, 2.5 * 63.3 * GRAVITY * 0.01 / PENDULUM,
-                              saddle_ankle_work_j(&config, &body));
+                              model_of(&config)->body.ankle_work_j);
     config = saddle_config_default(1.2f, 25.0f);
     config.cop_range_m = 0.06f;
-    body = saddle_body(&config);
+    body = model_of(&config)->body;
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 25.0 * GRAVITY * 0.0036 / (0.57 * 1.2),
-                              saddle_ankle_work_j(&config, &body));
+                              model_of(&config)->body.ankle_work_j);
 }
 
 /* Just inside a foot, moving at w d_h to the border d_h ahead: the pendulum's kinetic energy and
@@ -164,7 +164,7 @@ static void test_com_over_a_foot_at_w_d_h_has_as_much_as_the_ankles_absorb(void)
             .state = {.com_m = {0.0f, (float)(1.0 - 0.6 * d * d)},
                       .velocity_m_s = {(float)(FREQUENCY * d), 0.0f}},
         };
-        const double work = (double)saddle_ankle_work_j(&config, &body);
+        const double work = (double)model_of(&config)->body.ankle_work_j;
         const double of_second_order = 0.25 * d * d / (PENDULUM * PENDULUM);
         TEST_ASSERT_DOUBLE_WITHIN(work * of_second_order + ENERGY_TOLERANCE, work,
                                   excess_stop(&posture));
@@ -179,11 +179,11 @@ static void test_energies_grow_with_the_mass(void)
                                .planned = {{0.04f, 0.0f}, {1.2f, 0.0f}}};
     const float stop = excess_stop(&posture);
     const float track = excess_track(&posture);
-    const float work = saddle_ankle_work_j(&config, &body);
+    const float work = model_of(&config)->body.ankle_work_j;
     config.body_mass_kg *= 2.0f;
     ASSERT_SAME_FLOAT(2.0f * stop, excess_stop(&posture));
     ASSERT_SAME_FLOAT(2.0f * track, excess_track(&posture));
-    ASSERT_SAME_FLOAT(2.0f * work, saddle_ankle_work_j(&config, &body));
+    ASSERT_SAME_FLOAT(2.0f * work, model_of(&config)->body.ankle_work_j);
 }
 
 /* No leg reaches the CoM, or the place on the border: feet 5 m apart, the exit midway. */
@@ -202,9 +202,9 @@ static void test_no_energy_is_told_where_no_leg_reaches(void)
         float stop_j = NAN;
         float track_j = NAN;
         TEST_ASSERT_FALSE(
-            saddle_excess_stop_j(&config, &body, table[i].cop_m, &bos, state, &stop_j));
+            saddle_excess_stop_j(model_of(&config), table[i].cop_m, &bos, state, &stop_j));
         TEST_ASSERT_FALSE(
-            saddle_excess_track_j(&config, &body, table[i].cop_m, &bos, state, state, &track_j));
+            saddle_excess_track_j(model_of(&config), table[i].cop_m, &bos, state, state, &track_j));
         ASSERT_SAME_FLOAT(0.0f, stop_j);
         ASSERT_SAME_FLOAT(0.0f, track_j);
     }

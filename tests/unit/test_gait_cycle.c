@@ -11,7 +11,7 @@ static saddle_cycle_t cycle;
 void setUp(void)
 {
     config = paper_config();
-    body = saddle_body(&config);
+    body = model_of(&config)->body;
     memset(&cycle, 0, sizeof cycle);
 }
 
@@ -20,7 +20,7 @@ void tearDown(void) {}
 static void begin(uint8_t phase, float speed, bool under_way)
 {
     const bool left = phase == 0u || phase == 3u;
-    const float half = 0.5f * saddle_step_width_m(&config, speed);
+    const float half = 0.5f * saddle_step_width_m(model_of(&config), speed);
     const saddle_cycle_start_t start = {
         .phase = phase,
         .stance_y_m = left ? half : -half,
@@ -30,20 +30,20 @@ static void begin(uint8_t phase, float speed, bool under_way)
         .speed = saddle_speed_from_m_s(speed),
         .under_way = under_way,
     };
-    saddle_cycle_begin(&cycle, &config, &body, &start);
+    saddle_cycle_begin(&cycle, model_of(&config), &start);
     cycle.profile.target = start.speed;
     cycle.profile.rate_m_s2 = 0.5f;
 }
 
 static uint32_t advance(uint32_t dt_us, bool *arrived)
 {
-    return saddle_cycle_advance(&cycle, &config, &body, 0.1f, dt_us, arrived);
+    return saddle_cycle_advance(&cycle, model_of(&config), 0.1f, dt_us, arrived);
 }
 
 static saddle_pose_t pose(void)
 {
     saddle_pose_t pose;
-    saddle_cycle_pose(&cycle, &config, &body, &pose);
+    saddle_cycle_pose(&cycle, model_of(&config), &pose);
     return pose;
 }
 
@@ -163,7 +163,7 @@ static void test_last_swing_that_has_lost_its_speed_has_arrived(void)
 static bool land_at(float dx, float dy)
 {
     const saddle_vec2_t step = {cycle.last_step_m.x + dx, cycle.last_step_m.y + dy};
-    return saddle_cycle_land(&cycle, &config, &body, step);
+    return saddle_cycle_land(&cycle, model_of(&config), step);
 }
 
 static void walk_to_landing(bool last_swing, uint32_t further_us)
@@ -231,7 +231,7 @@ static void test_landing_far_beyond_a_short_step_or_the_leg_is_refused(void)
 
     config.body_height_m = 1.2f; /* 0.8 l_p^2 = 0.374 m^2 */
     config.peak_speed_m_s = 3.9f;
-    body = saddle_body(&config);
+    body = model_of(&config)->body;
     walk_to_landing(false, 0);
     TEST_ASSERT_FALSE(land_at(0.19f, -0.30f)); /* CoM 0.50 m behind, 0.37 m beside */
     TEST_ASSERT_TRUE(land_at(0.14f, -0.30f));

@@ -9,7 +9,7 @@ static saddle_body_t body;
 void setUp(void)
 {
     config = paper_config();
-    body = saddle_body(&config);
+    body = model_of(&config)->body;
 }
 
 void tearDown(void) {}
@@ -21,7 +21,7 @@ static double double_of(saddle_fixed_t position)
 
 static saddle_quarter_t quarter_at(float speed)
 {
-    return saddle_quarter(&config, SADDLE_LEFT, 0.3f, saddle_step_width_m(&config, speed), speed);
+    return saddle_quarter(model_of(&config), SADDLE_LEFT, 0.3f, saddle_step_width_m(model_of(&config), speed), speed);
 }
 
 static void test_body_constants(void)
@@ -41,12 +41,12 @@ static void test_step_width_is_piecewise_with_the_ends_in_the_middle_piece(void)
                  {1.0, 0.1328},   {1.2, 0.10},     {5.0, 0.10}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, table[i].width,
-                                  saddle_step_width_m(&config, (float)table[i].speed));
+                                  saddle_step_width_m(model_of(&config), (float)table[i].speed));
     }
-    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.21792, saddle_step_width_m(&config, 0.6f));
-    ASSERT_SAME_FLOAT(0.22f, saddle_step_width_m(&config, nextafterf(0.6f, 0.0f)));
-    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.11152, saddle_step_width_m(&config, 1.1f));
-    ASSERT_SAME_FLOAT(0.10f, saddle_step_width_m(&config, nextafterf(1.1f, 2.0f)));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.21792, saddle_step_width_m(model_of(&config), 0.6f));
+    ASSERT_SAME_FLOAT(0.22f, saddle_step_width_m(model_of(&config), nextafterf(0.6f, 0.0f)));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.11152, saddle_step_width_m(model_of(&config), 1.1f));
+    ASSERT_SAME_FLOAT(0.10f, saddle_step_width_m(model_of(&config), nextafterf(1.1f, 2.0f)));
 }
 
 static void test_half_step_is_the_regression_s_to_the_nanometre(void)
@@ -56,9 +56,9 @@ static void test_half_step_is_the_regression_s_to_the_nanometre(void)
         const double slope = (double)config.half_step_slope_s;
         const double expected = slope * (double)speed + (double)config.half_step_intercept_m;
         TEST_ASSERT_DOUBLE_WITHIN(2e-10, expected, /* the slope is counted in 2^-31 s */
-                                  double_of(saddle_half_step(&config, SADDLE_LEFT, fixed)));
-        TEST_ASSERT_TRUE(saddle_half_step(&config, SADDLE_LEFT, fixed) ==
-                         saddle_half_step(&config, SADDLE_RIGHT, fixed));
+                                  double_of(saddle_half_step(model_of(&config), SADDLE_LEFT, fixed)));
+        TEST_ASSERT_TRUE(saddle_half_step(model_of(&config), SADDLE_LEFT, fixed) ==
+                         saddle_half_step(model_of(&config), SADDLE_RIGHT, fixed));
     }
 }
 
@@ -71,11 +71,11 @@ static void test_quarter_at_the_paper_s_speeds(void)
         TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.02656 * v + 0.002575, quarter.vertical_m);
         TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, (double)quarter.width_m / (2.0 * PI * v),
                                   quarter.amplitude_m);
-        ASSERT_SAME_FLOAT(saddle_step_width_m(&config, speeds[i]), quarter.width_m);
+        ASSERT_SAME_FLOAT(saddle_step_width_m(model_of(&config), speeds[i]), quarter.width_m);
         ASSERT_SAME_FLOAT(0.3f, quarter.length_m);
         TEST_ASSERT_EQUAL_INT(SADDLE_LEFT, quarter.stance);
     }
-    ASSERT_SAME_FLOAT(0.02f, saddle_quarter(&config, SADDLE_LEFT, 0.3f, 0.001f, 1.0f).width_m);
+    ASSERT_SAME_FLOAT(0.02f, saddle_quarter(model_of(&config), SADDLE_LEFT, 0.3f, 0.001f, 1.0f).width_m);
 }
 
 static void test_sides_have_their_own_step_length_and_width(void)
@@ -85,14 +85,14 @@ static void test_sides_have_their_own_step_length_and_width(void)
     config.step_width_factor_left = 0.7f;
     config.step_width_factor_right = 1.6f;
     const saddle_fixed_t speed = saddle_speed_from_m_s(1.0f);
-    const double left = double_of(saddle_half_step(&config, SADDLE_LEFT, speed));
-    const double right = double_of(saddle_half_step(&config, SADDLE_RIGHT, speed));
+    const double left = double_of(saddle_half_step(model_of(&config), SADDLE_LEFT, speed));
+    const double right = double_of(saddle_half_step(model_of(&config), SADDLE_RIGHT, speed));
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.8 * 0.3153, left);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.1 * 0.3153, right);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.7 * 0.0664,
-                              saddle_landing_y_m(&config, SADDLE_LEFT, 1.0f));
+                              saddle_landing_y_m(model_of(&config), SADDLE_LEFT, 1.0f));
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -1.6 * 0.0664,
-                              saddle_landing_y_m(&config, SADDLE_RIGHT, 1.0f));
+                              saddle_landing_y_m(model_of(&config), SADDLE_RIGHT, 1.0f));
 }
 
 /* min S_SW = 1 - 2 A_y / d_SW = 1 - 1/(pi v), the paper's finding. */
@@ -148,7 +148,7 @@ static void test_com_never_passes_tangency(void)
 
 static void test_step_bounds(void)
 {
-    const saddle_step_bounds_t bounds = saddle_step_bounds(&config, &body, 1.2f);
+    const saddle_step_bounds_t bounds = saddle_step_bounds(model_of(&config), 1.2f);
     const double frequency = sqrt(GRAVITY / (0.57 * 1.79));
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.2 / (2.0 * frequency), bounds.min_m);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.1802 * 1.2 + 0.1351, bounds.reference_m);
@@ -165,7 +165,7 @@ static void test_feasible_speeds_lie_between_zero_and_the_ceiling(void)
                  {1.9345f, true}, {1.936f, false}, {3.0f, false}, {1e6f, false}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         TEST_ASSERT_EQUAL(table[i].feasible,
-                          saddle_step_bounds(&config, &body, table[i].speed).feasible);
+                          saddle_step_bounds(model_of(&config), table[i].speed).feasible);
     }
 }
 
@@ -184,10 +184,10 @@ static void test_ceiling_parts_feasible_from_infeasible_for_any_person(void)
         if (saddle_config_check(&config) != NULL) {
             continue;
         }
-        body = saddle_body(&config);
+        body = model_of(&config)->body;
         const float ceiling = body.speed_ceiling_m_s;
-        TEST_ASSERT_TRUE(saddle_step_bounds(&config, &body, 0.99f * ceiling).feasible);
-        const saddle_step_bounds_t above = saddle_step_bounds(&config, &body, 1.001f * ceiling);
+        TEST_ASSERT_TRUE(saddle_step_bounds(model_of(&config), 0.99f * ceiling).feasible);
+        const saddle_step_bounds_t above = saddle_step_bounds(model_of(&config), 1.001f * ceiling);
         TEST_ASSERT_FALSE(above.feasible);
         if (above.reference_m < above.max_m) {
             xcom_first++;

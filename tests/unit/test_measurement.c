@@ -40,7 +40,7 @@ void tearDown(void) {}
 
 static uint32_t judge(void)
 {
-    return saddle_judge(&watch, &config, &measured, planned_m_s, DT_S);
+    return saddle_judge(&watch, model_of(&config), &measured, planned_m_s, DT_S);
 }
 
 /* Of this measurement alone. */

@@ -17,8 +17,8 @@ static saddle_feet_t feet;
 
 static void stand(float speed_m_s)
 {
-    body = saddle_body(&config);
-    saddle_planner_reset(&planner, &config);
+    body = model_of(&config)->body;
+    saddle_planner_reset(&planner, model_of(&config));
     command = (saddle_command_t){SADDLE_COMMAND_WALK, speed_m_s, 0.17453293f};
     feet = (saddle_feet_t){.known = false};
 }
@@ -26,15 +26,15 @@ static void stand(float speed_m_s)
 static uint32_t tick(uint32_t dt_us)
 {
     const uint32_t limits =
-        saddle_planner_update(&planner, &config, &body, &command, &feet, dt_us);
-    return limits | saddle_planner_write(&planner, &config, &body, &plan);
+        saddle_planner_update(&planner, model_of(&config), &command, &feet, dt_us);
+    return limits | saddle_planner_write(&planner, model_of(&config), &plan);
 }
 
 /* A steady walk from the left foot via point. */
 static void join(float speed_m_s)
 {
     stand(speed_m_s);
-    saddle_planner_join(&planner, &config, &body, &command);
+    saddle_planner_join(&planner, model_of(&config), &command);
     tick(0);
 }
 
@@ -724,7 +724,7 @@ static void test_events_are_foretold_between_ticks(void)
         uint32_t via_us = 0;
         uint32_t land_us = 0;
         for (uint32_t t = 0; t < 3000000u && land_us == 0u; t += 10u) {
-            saddle_planner_advance(&foretold, &config, &body, 10u);
+            saddle_planner_advance(&foretold, model_of(&config), 10u);
             via_us = via_us == 0u && foretold.cycle.phase != said.phase ? t + 10u : via_us;
             land_us = foretold.cycle.step_count != said.step_count ? t + 10u : 0u;
             if (foretold.shifting) {

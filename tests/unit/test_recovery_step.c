@@ -2,6 +2,7 @@
  *  CoP can mend until then. */
 #include "balance_twin.h"
 
+#include <saddlewalk/vec2.h>
 #include <saddlewalk/recovery_step.h>
 
 #define STEP_TIME_S 0.55f
@@ -21,16 +22,16 @@ void setUp(void)
     config.recovery_width_max_m = 0.45f;
     config.recovery_margin_m = 0.0f;
     config.recovery_follow = 0.0f;
-    body = saddle_body(&config);
+    body = model_of(&config)->body;
 }
 
 void tearDown(void) {}
 
-static saddle_recovery_t recovery_from(const saddle_catch_t *to_catch)
+static saddle_recovery_t recovery_from(const saddle_recovery_target_t *target)
 {
     saddle_recovery_t recovery;
     memset(&recovery, 0xFF, sizeof recovery);
-    saddle_recovery_step(&config, &body, to_catch, &recovery);
+    saddle_recovery_step(model_of(&config), target, &recovery);
     return recovery;
 }
 
@@ -52,10 +53,10 @@ static double sustained(double step_time_s)
 }
 
 /* How far behind the new CoP the XCoM may be: as planned, or d_h. */
-static double heel(const saddle_catch_t *to_catch)
+static double heel(const saddle_recovery_target_t *target)
 {
     return fmax((double)config.cop_range_m,
-                (double)to_catch->landing_m.x - (double)to_catch->xcom_m.x);
+                (double)target->landing_m.x - (double)target->xcom_m.x);
 }
 
 static double outward_of(saddle_side_t stance)
@@ -63,16 +64,16 @@ static double outward_of(saddle_side_t stance)
     return stance == SADDLE_LEFT ? -1.0 : 1.0;
 }
 
-static places_t places(const saddle_catch_t *to_catch)
+static places_t places(const saddle_recovery_target_t *target)
 {
-    const double step_s = (double)to_catch->step_time_s;
+    const double step_s = (double)target->step_time_s;
     const double quick_s = fmin(step_s, (double)config.foresight_s);
-    const double x = (double)to_catch->xcom_m.x + (double)to_catch->departure_m.x;
-    const double y = outward_of(to_catch->stance) *
-                     ((double)to_catch->xcom_m.y + (double)to_catch->departure_m.y);
+    const double x = (double)target->xcom_m.x + (double)target->departure_m.x;
+    const double y = outward_of(target->stance) *
+                     ((double)target->xcom_m.y + (double)target->departure_m.y);
     return (places_t){
         .min_x = fmax(-reach(), x - sustained(step_s)),
-        .max_x = fmin(reach(), x + heel(to_catch)),
+        .max_x = fmin(reach(), x + heel(target)),
         .min_y = fmax((double)config.recovery_width_min_m, y + (double)config.recovery_margin_m),
         .max_y = fmin((double)config.recovery_width_max_m,
                       y + (double)config.recovery_width_max_m / exp(FREQUENCY * quick_s)),
@@ -80,13 +81,13 @@ static places_t places(const saddle_catch_t *to_catch)
 }
 
 /* The planned walk on a left stance foot at a speed: landing, XCoM then, step time. */
-static saddle_catch_t planned_walk(double v)
+static saddle_recovery_target_t planned_walk(double v)
 {
     const double half = 0.1802 * v + 0.1351;
     const double width = v < 0.6 ? 0.22 : v > 1.1 ? 0.10 : -0.2128 * v + 0.3456;
     const double amplitude = fmin(width / (2.0 * PI * v), width / PI);
     const double vy = amplitude * 0.5 * PI / half * v;
-    return (saddle_catch_t){
+    return (saddle_recovery_target_t){
         .stance = SADDLE_LEFT,
         .landing_m = {(float)(2.0 * half), (float)-width},
         .xcom_m = {(float)(half + v / FREQUENCY), (float)(-0.5 * width - vy / FREQUENCY)},
@@ -94,18 +95,18 @@ static saddle_catch_t planned_walk(double v)
     };
 }
 
-static saddle_catch_t mirrored(saddle_catch_t to_catch)
+static saddle_recovery_target_t mirrored(saddle_recovery_target_t target)
 {
-    to_catch.stance = saddle_other_side(to_catch.stance);
-    to_catch.landing_m.y = -to_catch.landing_m.y;
-    to_catch.xcom_m.y = -to_catch.xcom_m.y;
-    to_catch.departure_m.y = -to_catch.departure_m.y;
-    return to_catch;
+    target.stance = saddle_other_side(target.stance);
+    target.landing_m.y = -target.landing_m.y;
+    target.xcom_m.y = -target.xcom_m.y;
+    target.departure_m.y = -target.departure_m.y;
+    return target;
 }
 
-static saddle_catch_t random_catch(uint32_t *state)
+static saddle_recovery_target_t random_catch(uint32_t *state)
 {
-    const saddle_catch_t left = {
+    const saddle_recovery_target_t left = {
         .stance = SADDLE_LEFT,
         .landing_m = {random_in(state, 0.0f, 0.9f), random_in(state, -0.3f, -0.05f)},
         .xcom_m = {random_in(state, 0.2f, 0.9f), random_in(state, -0.2f, 0.0f)},
@@ -123,8 +124,8 @@ static void test_planned_walk_lands_where_it_is_planned_at_every_speed(void)
     config.foresight_s = 0.4f;
     config.recovery_width_max_m = 0.5f;
     for (double v = 0.05; v < 1.93; v += 0.01) {
-        const saddle_catch_t left = planned_walk(v);
-        const saddle_catch_t sides[] = {left, mirrored(left)};
+        const saddle_recovery_target_t left = planned_walk(v);
+        const saddle_recovery_target_t sides[] = {left, mirrored(left)};
         for (size_t i = 0; i < COUNT_OF(sides); i++) {
             const saddle_recovery_t recovery = recovery_from(&sides[i]);
             TEST_ASSERT_TRUE(recovery.found);
@@ -139,13 +140,13 @@ static void test_planned_walk_lands_where_it_is_planned_at_every_speed(void)
 /* The model page: at 1.9 m/s the planned walk needs 0.83 m of the 0.97 m reach. */
 static void test_fast_walk_has_the_model_page_s_reach_left(void)
 {
-    saddle_catch_t to_catch = planned_walk(1.9);
-    const places_t free = places(&to_catch);
+    saddle_recovery_target_t target = planned_walk(1.9);
+    const places_t free = places(&target);
     TEST_ASSERT_DOUBLE_WITHIN(0.005, 0.83, free.min_x);
     TEST_ASSERT_DOUBLE_WITHIN(0.005, 0.97, reach());
-    to_catch.landing_m.x = 0.0f;
+    target.landing_m.x = 0.0f;
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, free.min_x,
-                              recovery_from(&to_catch).landing_m.x);
+                              recovery_from(&target).landing_m.x);
 }
 
 /* ---- one direction at a time --------------------------------------------------------------- */
@@ -153,15 +154,15 @@ static void test_fast_walk_has_the_model_page_s_reach_left(void)
 /* The foot follows an XCoM that departs ever further as little as it must, until it gives up. */
 static void test_xcom_that_runs_ahead_pulls_the_landing_to_the_end_of_the_reach(void)
 {
-    saddle_catch_t to_catch = {.stance = SADDLE_LEFT,
+    saddle_recovery_target_t target = {.stance = SADDLE_LEFT,
                                .landing_m = {0.6f, -0.12f},
                                .xcom_m = {0.6f, -0.06f},
                                .step_time_s = STEP_TIME_S};
     const double ahead = sustained((double)STEP_TIME_S);
     for (int mm = 0; mm < 1000; mm++) {
-        to_catch.departure_m.x = 1e-3f * (float)mm;
+        target.departure_m.x = 1e-3f * (float)mm;
         const double xcom = 0.6 + 1e-3 * mm;
-        const saddle_recovery_t recovery = recovery_from(&to_catch);
+        const saddle_recovery_t recovery = recovery_from(&target);
         TEST_ASSERT_EQUAL(xcom - ahead <= reach(), recovery.found);
         if (recovery.found) {
             TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, fmax(0.6, xcom - ahead),
@@ -173,14 +174,14 @@ static void test_xcom_that_runs_ahead_pulls_the_landing_to_the_end_of_the_reach(
 
 static void test_xcom_that_falls_behind_pulls_the_landing_back_to_the_end_of_the_reach(void)
 {
-    saddle_catch_t to_catch = {.stance = SADDLE_RIGHT,
+    saddle_recovery_target_t target = {.stance = SADDLE_RIGHT,
                                .landing_m = {0.6f, 0.12f},
                                .xcom_m = {0.6f, 0.06f},
                                .step_time_s = STEP_TIME_S};
     for (int mm = 0; mm < 2000; mm++) {
-        to_catch.departure_m.x = -1e-3f * (float)mm;
+        target.departure_m.x = -1e-3f * (float)mm;
         const double heel = 0.6 - 1e-3 * mm + 0.1; /* the XCoM over the heel of the new foot */
-        const saddle_recovery_t recovery = recovery_from(&to_catch);
+        const saddle_recovery_t recovery = recovery_from(&target);
         TEST_ASSERT_EQUAL(heel >= -reach(), recovery.found);
         if (recovery.found) {
             TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, fmin(0.6, heel), recovery.landing_m.x);
@@ -194,16 +195,16 @@ static void test_xcom_that_goes_aside_widens_the_step_or_narrows_it(void)
 {
     const double stance_side = 0.45 / exp(FREQUENCY * 0.5);
     for (int side = 0; side < 2; side++) {
-        saddle_catch_t to_catch = {.stance = SADDLE_LEFT,
+        saddle_recovery_target_t target = {.stance = SADDLE_LEFT,
                                    .landing_m = {0.6f, -0.25f},
                                    .xcom_m = {0.7f, -0.06f},
                                    .step_time_s = STEP_TIME_S};
-        to_catch = side == 0 ? to_catch : mirrored(to_catch);
-        const double outward = outward_of(to_catch.stance);
+        target = side == 0 ? target : mirrored(target);
+        const double outward = outward_of(target.stance);
         for (int mm = -600; mm < 600; mm++) {
-            to_catch.departure_m.y = (float)(1e-3 * outward * mm);
+            target.departure_m.y = (float)(1e-3 * outward * mm);
             const double xcom = 0.06 + 1e-3 * mm;
-            const saddle_recovery_t recovery = recovery_from(&to_catch);
+            const saddle_recovery_t recovery = recovery_from(&target);
             const bool reached = xcom <= 0.45 && xcom + stance_side >= 0.05;
             if (fabs(xcom - 0.45) > 1e-6 && fabs(xcom + stance_side - 0.05) > 1e-6) {
                 TEST_ASSERT_EQUAL(reached, recovery.found);
@@ -221,16 +222,16 @@ static void test_xcom_that_goes_aside_widens_the_step_or_narrows_it(void)
 /* ---- against a search ---------------------------------------------------------------------- */
 
 /* The model page's conditions on a place, without intervals. */
-static bool catches(const saddle_catch_t *to_catch, double x, double outward_y)
+static bool catches(const saddle_recovery_target_t *target, double x, double outward_y)
 {
-    const double step_s = (double)to_catch->step_time_s;
+    const double step_s = (double)target->step_time_s;
     const double quick_s = fmin(step_s, (double)config.foresight_s);
-    const double ahead = (double)to_catch->xcom_m.x + (double)to_catch->departure_m.x - x;
-    const double aside = outward_y - outward_of(to_catch->stance) *
-                                         ((double)to_catch->xcom_m.y +
-                                          (double)to_catch->departure_m.y);
+    const double ahead = (double)target->xcom_m.x + (double)target->departure_m.x - x;
+    const double aside = outward_y - outward_of(target->stance) *
+                                         ((double)target->xcom_m.y +
+                                          (double)target->departure_m.y);
     return fabs(x) <= reach() && ahead <= sustained(step_s) &&
-           ahead >= -heel(to_catch) &&
+           ahead >= -heel(target) &&
            outward_y >= (double)config.recovery_width_min_m &&
            outward_y <= (double)config.recovery_width_max_m &&
            aside >= (double)config.recovery_margin_m &&
@@ -245,21 +246,21 @@ typedef struct {
 /* Over a grid, where the conditions on x and y do not depend on each other. */
 #define GRID_M 2e-3
 
-static search_t search(const saddle_catch_t *to_catch, double wanted_x, double wanted_outward_y)
+static search_t search(const saddle_recovery_target_t *target, double wanted_x, double wanted_outward_y)
 {
     search_t best = {.found = false, .x = HUGE_VAL, .y = HUGE_VAL};
-    const places_t free = places(to_catch);
+    const places_t free = places(target);
     const double some_x = 0.5 * (free.min_x + free.max_x);
     const double some_y = 0.5 * (free.min_y + free.max_y);
     bool found_x = false;
     bool found_y = false;
     for (int i = -500; i <= 500; i++) {
         const double at = GRID_M * i;
-        if (catches(to_catch, at, some_y) && fabs(at - wanted_x) < fabs(best.x - wanted_x)) {
+        if (catches(target, at, some_y) && fabs(at - wanted_x) < fabs(best.x - wanted_x)) {
             best.x = at;
             found_x = true;
         }
-        if (catches(to_catch, some_x, at) &&
+        if (catches(target, some_x, at) &&
             fabs(at - wanted_outward_y) < fabs(best.y - wanted_outward_y)) {
             best.y = at;
             found_y = true;
@@ -277,15 +278,15 @@ static void test_landing_is_the_nearest_place_of_all_that_catch(void)
     for (int i = 0; i < MANY(2000); i++) {
         config.recovery_follow = (float)(i % 3) * 0.5f;
         config.recovery_margin_m = random_in(&state, -0.05f, 0.05f);
-        const saddle_catch_t to_catch = random_catch(&state);
-        const saddle_recovery_t recovery = recovery_from(&to_catch);
-        const double outward = outward_of(to_catch.stance);
+        const saddle_recovery_target_t target = random_catch(&state);
+        const saddle_recovery_t recovery = recovery_from(&target);
+        const double outward = outward_of(target.stance);
         const double follow = (double)config.recovery_follow;
         const double wanted_x =
-            (double)to_catch.landing_m.x + follow * (double)to_catch.departure_m.x;
-        const double wanted_y = outward * ((double)to_catch.landing_m.y +
-                                           follow * (double)to_catch.departure_m.y);
-        const search_t best = search(&to_catch, wanted_x, wanted_y);
+            (double)target.landing_m.x + follow * (double)target.departure_m.x;
+        const double wanted_y = outward * ((double)target.landing_m.y +
+                                           follow * (double)target.departure_m.y);
+        const search_t best = search(&target, wanted_x, wanted_y);
         if (recovery.found && best.found) {
             found++;
             TEST_ASSERT_DOUBLE_WITHIN(GRID_M, best.x, recovery.landing_m.x);
@@ -305,9 +306,9 @@ static void test_margin_is_the_room_left_on_the_scarcer_axis(void)
 {
     uint32_t state = 71;
     for (int i = 0; i < MANY(5000); i++) {
-        const saddle_catch_t to_catch = random_catch(&state);
-        const places_t free = places(&to_catch);
-        const saddle_recovery_t recovery = recovery_from(&to_catch);
+        const saddle_recovery_target_t target = random_catch(&state);
+        const places_t free = places(&target);
+        const saddle_recovery_t recovery = recovery_from(&target);
         const double room = fmin(free.max_x - free.min_x, free.max_y - free.min_y);
         TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, room, recovery.margin_m);
         TEST_ASSERT_EQUAL(recovery.margin_m >= 0.0f, recovery.found);
@@ -325,14 +326,14 @@ static void test_margin_is_continuous(void)
     uint32_t state = 73;
     int changes = 0;
     for (int i = 0; i < MANY(300); i++) {
-        saddle_catch_t to_catch = random_catch(&state);
+        saddle_recovery_target_t target = random_catch(&state);
         const double angle = (double)random_in(&state, 0.0f, 6.28f);
         bool was_found = false;
         double before = 0.0;
         for (int mm = 0; mm < 1500; mm++) {
-            to_catch.departure_m.x = (float)(1e-3 * mm * cos(angle));
-            to_catch.departure_m.y = (float)(1e-3 * mm * sin(angle));
-            const saddle_recovery_t recovery = recovery_from(&to_catch);
+            target.departure_m.x = (float)(1e-3 * mm * cos(angle));
+            target.departure_m.y = (float)(1e-3 * mm * sin(angle));
+            const saddle_recovery_t recovery = recovery_from(&target);
             const double margin = (double)recovery.margin_m;
             if (mm > 0) {
                 TEST_ASSERT_DOUBLE_WITHIN(1e-3 + PLACE_TOLERANCE, before, margin);
@@ -353,7 +354,7 @@ static void test_margin_is_continuous(void)
 /* 0: the nearest place to the planned one; 1: as far off it as the XCoM is off its own. */
 static void test_landing_follows_the_departure_by_its_share(void)
 {
-    saddle_catch_t to_catch = {.stance = SADDLE_LEFT,
+    saddle_recovery_target_t target = {.stance = SADDLE_LEFT,
                                .landing_m = {0.5f, -0.2f},
                                .xcom_m = {0.6f, -0.15f},
                                .departure_m = {0.08f, -0.03f},
@@ -361,27 +362,27 @@ static void test_landing_follows_the_departure_by_its_share(void)
     const float shares[] = {0.0f, 0.25f, 1.0f};
     for (size_t i = 0; i < COUNT_OF(shares); i++) {
         config.recovery_follow = shares[i];
-        const saddle_recovery_t recovery = recovery_from(&to_catch);
+        const saddle_recovery_t recovery = recovery_from(&target);
         TEST_ASSERT_TRUE(recovery.found);
         TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, 0.5 + 0.08 * (double)shares[i],
                                   recovery.landing_m.x);
         TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, -0.2 - 0.03 * (double)shares[i],
                                   recovery.landing_m.y);
     }
-    to_catch.departure_m.x = 0.55f; /* no further than it reaches */
+    target.departure_m.x = 0.55f; /* no further than it reaches */
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, reach(),
-                              recovery_from(&to_catch).landing_m.x);
+                              recovery_from(&target).landing_m.x);
 }
 
 static void test_share_that_is_followed_changes_neither_margin_nor_decision(void)
 {
     uint32_t state = 79;
     for (int i = 0; i < MANY(1000); i++) {
-        const saddle_catch_t to_catch = random_catch(&state);
+        const saddle_recovery_target_t target = random_catch(&state);
         config.recovery_follow = 0.0f;
-        const saddle_recovery_t nearest = recovery_from(&to_catch);
+        const saddle_recovery_t nearest = recovery_from(&target);
         config.recovery_follow = 1.0f;
-        const saddle_recovery_t followed = recovery_from(&to_catch);
+        const saddle_recovery_t followed = recovery_from(&target);
         TEST_ASSERT_EQUAL(nearest.found, followed.found);
         ASSERT_SAME_FLOAT(nearest.margin_m, followed.margin_m);
     }
@@ -389,7 +390,7 @@ static void test_share_that_is_followed_changes_neither_margin_nor_decision(void
 
 static void test_margin_of_the_configuration_keeps_the_xcom_inside_the_foot(void)
 {
-    const saddle_catch_t to_catch = {.stance = SADDLE_RIGHT,
+    const saddle_recovery_target_t target = {.stance = SADDLE_RIGHT,
                                      .landing_m = {0.6f, 0.1f},
                                      .xcom_m = {0.7f, 0.15f},
                                      .step_time_s = STEP_TIME_S};
@@ -397,7 +398,7 @@ static void test_margin_of_the_configuration_keeps_the_xcom_inside_the_foot(void
     for (size_t i = 0; i < COUNT_OF(margins); i++) {
         config.recovery_margin_m = margins[i];
         TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, 0.15 + (double)margins[i],
-                                  recovery_from(&to_catch).landing_m.y);
+                                  recovery_from(&target).landing_m.y);
     }
 }
 
@@ -410,8 +411,8 @@ static void test_step_stops_where_the_xcom_lies_in_the_base_of_its_posture(void)
     int found = 0;
     for (int i = 0; i < MANY(5000); i++) {
         config.bos_factor = i % 2 == 0 ? 1.0f : 0.6f;
-        const saddle_catch_t to_catch = random_catch(&state);
-        const saddle_recovery_t recovery = recovery_from(&to_catch);
+        const saddle_recovery_target_t target = random_catch(&state);
+        const saddle_recovery_t recovery = recovery_from(&target);
         if (!recovery.found) {
             continue;
         }
@@ -421,8 +422,8 @@ static void test_step_stops_where_the_xcom_lies_in_the_base_of_its_posture(void)
         const twin_base_t base = twin_base(left ? landing : stance, left ? stance : landing, 0.1,
                                            (double)config.bos_factor);
         const double margin = twin_margin(
-            &base, (point_t){(double)to_catch.xcom_m.x + (double)to_catch.departure_m.x,
-                             (double)to_catch.xcom_m.y + (double)to_catch.departure_m.y});
+            &base, (point_t){(double)target.xcom_m.x + (double)target.departure_m.x,
+                             (double)target.xcom_m.y + (double)target.departure_m.y});
         if (fabs(margin) > PLACE_TOLERANCE) {
             TEST_ASSERT_EQUAL(margin > 0.0, recovery.stops);
         }
@@ -450,7 +451,7 @@ static double mended_by_simulation(double xi, double foot, double trailing, doub
 
 static float least_after(float deviation_m, saddle_cop_shift_t shift, float time_s)
 {
-    const saddle_growth_t growth = saddle_growth(&body, time_s, shift.trailing_m != 0.0f);
+    const saddle_growth_t growth = saddle_growth(model_of(&config), time_s, shift.trailing_m != 0.0f);
     return saddle_least_deviation_m(deviation_m, shift, &growth);
 }
 

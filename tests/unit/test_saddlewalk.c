@@ -1,5 +1,7 @@
 /** The tick's contract: a complete output on every path, time, contexts, and whatever bytes come in. */
 #include "core_test.h"
+
+#include <saddlewalk/vec2.h>
 #include "output_fields.h"
 
 static saddle_config_t config;

@@ -20,7 +20,7 @@ void tearDown(void) {}
 
 static bool update(uint32_t faults)
 {
-    return saddle_safe_state_update(&state, &config, faults, DT_S);
+    return saddle_safe_state_update(&state, model_of(&config), faults, DT_S);
 }
 
 static const uint32_t LOST[] = {
@@ -166,11 +166,11 @@ static void test_measurement_of_which_a_part_never_came_stops(void)
 static void test_gap_between_the_ticks_stops_if_nobody_walks_for_so_long(void)
 {
     config.step_time_max_s = 4.0f;
-    saddle_safe_state_gap(&state, &config, 10.0f);
+    saddle_safe_state_gap(&state, model_of(&config), 10.0f);
     TEST_ASSERT_FALSE(update(0)); /* no measurement had ever come */
-    saddle_safe_state_gap(&state, &config, 3.9f);
+    saddle_safe_state_gap(&state, model_of(&config), 3.9f);
     TEST_ASSERT_FALSE(update(0));
-    saddle_safe_state_gap(&state, &config, 4.1f);
+    saddle_safe_state_gap(&state, model_of(&config), 4.1f);
     for (int tick = 1; tick <= 14; tick++) { /* 13 ticks are 1.04 s */
         TEST_ASSERT_EQUAL(tick < 13, update(0));
     }

@@ -26,7 +26,7 @@ void tearDown(void) {}
 
 static void track_for(float dt_s, uint32_t faults)
 {
-    saddle_track_steps(&tracker, &config, &measured, faults, dt_s);
+    saddle_track_steps(&tracker, model_of(&config), &measured, faults, dt_s);
 }
 
 static void track(void)

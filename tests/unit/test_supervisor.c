@@ -29,14 +29,14 @@ static saddle_scores_t score(const saddle_posture_t *posture)
 {
     saddle_scores_t scored;
     memset(&scored, 0, sizeof scored);
-    saddle_score_posture(&config, &body, posture, &scored);
+    saddle_score_posture(model_of(&config), posture, &scored);
     return scored;
 }
 
 void setUp(void)
 {
     config = paper_config();
-    body = saddle_body(&config);
+    body = model_of(&config)->body;
     memset(&supervisor, 0, sizeof supervisor);
     measured = good_measurement();
     intent = (saddle_intent_t){.leads = true,
@@ -56,7 +56,7 @@ static uint32_t update_with(uint32_t faults)
     scores.bos.defined = true;
     scores.can_stop = true;
     scores.paper_stable = true;
-    return saddle_supervisor_update(&supervisor, &config, &body, &measured, faults, DT_S, &intent,
+    return saddle_supervisor_update(&supervisor, model_of(&config), &measured, faults, DT_S, &intent,
                                     &scores, &verdict);
 }
 
@@ -64,7 +64,7 @@ static uint32_t update_with(uint32_t faults)
 static uint32_t update(void)
 {
     memset(&supervisor.watch, 0, sizeof supervisor.watch);
-    return update_with(saddle_judge(&supervisor.watch, &config, &measured, 0.0f, DT_S));
+    return update_with(saddle_judge(&supervisor.watch, model_of(&config), &measured, 0.0f, DT_S));
 }
 
 static const uint32_t UNTIL_STEP = (uint32_t)SADDLE_VALID_ALL & ~(uint32_t)SADDLE_VALID_STEP;

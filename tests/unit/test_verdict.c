@@ -2,6 +2,7 @@
  *  numbers against the model in double, each level and reason, and when it is announced. */
 #include "balance_twin.h"
 
+#include <saddlewalk/vec2.h>
 #include <saddlewalk/supervisor.h>
 
 static const float DT_S = 0.08f;
@@ -34,17 +35,17 @@ void setUp(void)
     config.caution_xcom_ap_m = 0.13f;
     config.caution_xcom_ml_m = 0.07f;
     config.level_hold_ticks = 1.0f;
-    body = saddle_body(&config);
+    body = model_of(&config)->body;
     memset(&supervisor, 0, sizeof supervisor);
 }
 
 void tearDown(void) {}
 
-static saddle_recovery_t recovery_from(const saddle_catch_t *to_catch)
+static saddle_recovery_t recovery_from(const saddle_recovery_target_t *target)
 {
     saddle_recovery_t recovery;
     memset(&recovery, 0xFF, sizeof recovery);
-    saddle_recovery_step(&config, &body, to_catch, &recovery);
+    saddle_recovery_step(model_of(&config), target, &recovery);
     return recovery;
 }
 
@@ -178,7 +179,7 @@ static uint32_t update(uint32_t faults)
     verdict.on_track = true;
     verdict.recovery.found = true;
     verdict.recovery.stops = true;
-    return saddle_supervisor_update(&supervisor, &config, &body, &measured, faults, DT_S, &intent,
+    return saddle_supervisor_update(&supervisor, model_of(&config), &measured, faults, DT_S, &intent,
                                     &scores, &verdict);
 }
 
@@ -232,14 +233,14 @@ static void assert_expected_base(const walk_t *walk, double x, const state_t *de
 static void assert_recovery(const walk_t *walk, point_t departure)
 {
     const state_t landing = planned_state(walk, walk->half);
-    const saddle_catch_t to_catch = {
+    const saddle_recovery_target_t target = {
         .stance = walk->stance,
         .landing_m = rounded(landing_of(walk)),
         .xcom_m = rounded(xcom(&landing)),
         .departure_m = rounded(departure),
         .step_time_s = (float)(2.0 * walk->half / walk->speed),
     };
-    const saddle_recovery_t expected = recovery_from(&to_catch);
+    const saddle_recovery_t expected = recovery_from(&target);
     TEST_ASSERT_EQUAL_UINT8(saddle_other_side(walk->stance), verdict.recovery.foot);
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, expected.margin_m, verdict.recovery.margin_m);
     if (fabsf(expected.margin_m) > 1e-5f) {
@@ -721,7 +722,7 @@ static void test_walk_above_the_ceiling_steps_no_further_than_the_leg_reaches(vo
     const walk_t own = walk_at(1.2, SADDLE_LEFT);
     config.half_step_slope_s = 0.56f;
     TEST_ASSERT_NULL(saddle_config_check(&config));
-    body = saddle_body(&config);
+    body = model_of(&config)->body;
     intent = (saddle_intent_t){.leads = false};
     const float speeds[] = {1.0f, 1.01f * body.speed_ceiling_m_s, 2.5f, 3.85f};
     for (size_t i = 0; i < COUNT_OF(speeds); i++) {

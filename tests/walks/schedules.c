@@ -97,7 +97,7 @@ static bool same_quarter(const saddle_plan_t *a, const saddle_plan_t *b)
 
 static double pendulum_m(const walk_t *walk)
 {
-    return (double)walk->context.body.pendulum_m;
+    return (double)walk->context.model.body.pendulum_m;
 }
 
 static bool is_erf(const walk_t *walk)
@@ -549,7 +549,7 @@ static void check_tick(walk_t *walk, const saddle_plan_t *now)
 static void check_limits(walk_t *walk, const saddle_output_t *output)
 {
     const saddle_command_t *command = &walk->input.command;
-    const float ceiling_m_s = walk->context.body.speed_ceiling_m_s;
+    const float ceiling_m_s = walk->context.model.body.speed_ceiling_m_s;
     const bool moves = command->mode == (uint8_t)SADDLE_COMMAND_WALK &&
                        !(command->speed_m_s >= 0.0f && command->speed_m_s <= 0.0f);
     const bool limited = moves && (command->speed_m_s < SADDLE_SPEED_FLOOR_M_S ||
@@ -607,7 +607,7 @@ static uint64_t random_period_us(walk_t *walk)
 
 static saddle_command_t random_command(walk_t *walk)
 {
-    const double ceiling = (double)walk->context.body.speed_ceiling_m_s;
+    const double ceiling = (double)walk->context.model.body.speed_ceiling_m_s;
     saddle_command_t command = {.mode = SADDLE_COMMAND_WALK};
     command.heel_strike_rad = (float)random_in(&walk->random, -0.05, 0.6);
     switch (random_bits(&walk->random) >> 60) {
@@ -674,7 +674,7 @@ static saddle_config_t random_config(walk_t *walk)
 static void find_extremes(walk_t *walk)
 {
     const saddle_config_t *config = &walk->config;
-    const saddle_body_t *body = &walk->context.body;
+    const saddle_body_t *body = &walk->context.model.body;
     const double sides = 0.5 * (double)(config->step_width_factor_left +
                                         config->step_width_factor_right);
     const double longer = fmax((double)config->step_length_factor_left,

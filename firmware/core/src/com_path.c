@@ -1,5 +1,6 @@
 #include <saddlewalk/com_path.h>
 #include <saddlewalk/saddle_math.h>
+#include <saddlewalk/vec2.h>
 
 float saddle_quarter_angle_rad(const saddle_quarter_t *quarter, float x_m)
 {
@@ -8,7 +9,7 @@ float saddle_quarter_angle_rad(const saddle_quarter_t *quarter, float x_m)
 
 saddle_sample_t saddle_com_lateral(const saddle_quarter_t *quarter, float angle_rad)
 {
-    const float outward = quarter->stance == SADDLE_LEFT ? 1.0f : -1.0f;
+    const float outward = saddle_outward(quarter->stance);
     const float amplitude_m = outward * quarter->amplitude_m;
     const saddle_sin_cos_t angle = saddle_sin_cos(angle_rad);
     saddle_sample_t lateral;

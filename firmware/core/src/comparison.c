@@ -1,6 +1,7 @@
 #include <saddlewalk/comparison.h>
 #include <saddlewalk/saddle_math.h>
 #include <saddlewalk/stability_scores.h>
+#include <saddlewalk/vec2.h>
 
 /* A foot that landed by less ahead made no step to go by. */
 #define HALF_STEP_MIN_M 0.02f
@@ -15,19 +16,9 @@ typedef struct {
     float x_m;
 } nominal_t;
 
-static saddle_vec2_t less(saddle_vec2_t a, saddle_vec2_t b)
+static saddle_vec2_t xcom_of(const saddle_model_t *model, const saddle_com_state_t *state)
 {
-    return (saddle_vec2_t){a.x - b.x, a.y - b.y};
-}
-
-static saddle_vec2_t plus(saddle_vec2_t a, saddle_vec2_t b)
-{
-    return (saddle_vec2_t){a.x + b.x, a.y + b.y};
-}
-
-static saddle_vec2_t xcom_of(const saddle_body_t *body, const saddle_com_state_t *state)
-{
-    return saddle_xcom_m(state->com_m, state->velocity_m_s, body->natural_frequency_rad_s);
+    return saddle_xcom_m(state->com_m, state->velocity_m_s, model->body.natural_frequency_rad_s);
 }
 
 void saddle_compare_nothing(saddle_verdict_t *verdict)
@@ -47,26 +38,25 @@ void saddle_compare_nothing(saddle_verdict_t *verdict)
 }
 
 /* What any planned state says about the measured one. */
-static void compare_state(const saddle_config_t *config, const saddle_body_t *body,
-                          const saddle_wearer_t *wearer, const saddle_com_state_t *planned,
-                          saddle_verdict_t *verdict)
+static void compare_state(const saddle_model_t *model, const saddle_wearer_t *wearer,
+                          const saddle_com_state_t *planned, saddle_verdict_t *verdict)
 {
     const saddle_posture_t *posture = wearer->posture;
     const saddle_scores_t *scores = wearer->scores;
     const saddle_com_state_t measured = {posture->com_m, posture->com_velocity_m_s};
-    const bool reached = saddle_excess_track_j(config, body, posture->cop_m, &scores->bos,
-                                               &measured, planned, &verdict->excess_track_j);
+    const bool reached = saddle_excess_track_j(model, posture->cop_m, &scores->bos, &measured,
+                                               planned, &verdict->excess_track_j);
     verdict->compared = true;
-    verdict->on_track = reached && saddle_ankle_work_j(config, body) >= verdict->excess_track_j;
-    verdict->xcom_deviation_m = less(scores->xcom_m, xcom_of(body, planned));
+    verdict->on_track = reached && model->body.ankle_work_j >= verdict->excess_track_j;
+    verdict->xcom_deviation_m = saddle_vec2_sub(scores->xcom_m, xcom_of(model, planned));
 }
 
 /* trailing_m: the other foot, from the stance foot. */
-static saddle_vec2_t least_deviation_m(const saddle_config_t *config, saddle_vec2_t deviation_m,
+static saddle_vec2_t least_deviation_m(const saddle_model_t *model, saddle_vec2_t deviation_m,
                                        saddle_vec2_t trailing_m, const saddle_growth_t *growth)
 {
-    const saddle_cop_shift_t ap = {config->cop_shift_ap_m, trailing_m.x};
-    const saddle_cop_shift_t ml = {config->cop_shift_ml_m, trailing_m.y};
+    const saddle_cop_shift_t ap = {model->config.cop_shift_ap_m, trailing_m.x};
+    const saddle_cop_shift_t ml = {model->config.cop_shift_ml_m, trailing_m.y};
     const saddle_vec2_t least_m = {saddle_least_deviation_m(deviation_m.x, ap, growth),
                                    saddle_least_deviation_m(deviation_m.y, ml, growth)};
     return least_m;
@@ -74,45 +64,43 @@ static saddle_vec2_t least_deviation_m(const saddle_config_t *config, saddle_vec
 
 /* Both feet are to stand: no heel strike is expected, and the foot on the side to which the XCoM
  * departs can make a recovery step. from_middle: the planned CoM, from midway between the feet. */
-static void compare_standing(const saddle_config_t *config, const saddle_body_t *body,
-                             const saddle_wearer_t *wearer,
+static void compare_standing(const saddle_model_t *model, const saddle_wearer_t *wearer,
                              const saddle_com_state_t *from_middle, saddle_verdict_t *verdict)
 {
     const saddle_posture_t *posture = wearer->posture;
     const saddle_scores_t *scores = wearer->scores;
-    const saddle_com_state_t planned = {plus(scores->bos.centre_m, from_middle->com_m),
+    const saddle_com_state_t planned = {saddle_vec2_add(scores->bos.centre_m, from_middle->com_m),
                                         from_middle->velocity_m_s};
-    compare_state(config, body, wearer, &planned, verdict);
+    compare_state(model, wearer, &planned, verdict);
     verdict->ebos_com_m = scores->mos_com_m;
     verdict->ebos_xcom_m = scores->mos_xcom_m;
 
-    const saddle_growth_t growth = saddle_growth(body, config->foresight_s, false);
-    const saddle_side_t foot =
-        verdict->xcom_deviation_m.y > 0.0f ? SADDLE_LEFT : SADDLE_RIGHT;
+    const saddle_growth_t growth = saddle_growth(model, model->config.foresight_s, false);
+    const saddle_side_t foot = verdict->xcom_deviation_m.y > 0.0f ? SADDLE_LEFT : SADDLE_RIGHT;
     const saddle_side_t stance = saddle_other_side(foot);
-    const saddle_vec2_t from_stance_m = less(posture->cop_m[foot], posture->cop_m[stance]);
-    const saddle_catch_t to_catch = {
+    const saddle_vec2_t from_stance_m =
+        saddle_vec2_sub(posture->cop_m[foot], posture->cop_m[stance]);
+    const saddle_recovery_target_t target = {
         .stance = stance,
         .landing_m = from_stance_m,
-        .xcom_m = less(xcom_of(body, &planned), posture->cop_m[stance]),
-        .departure_m =
-            least_deviation_m(config, verdict->xcom_deviation_m, from_stance_m, &growth),
-        .step_time_s = config->foresight_s,
+        .xcom_m = saddle_vec2_sub(xcom_of(model, &planned), posture->cop_m[stance]),
+        .departure_m = least_deviation_m(model, verdict->xcom_deviation_m, from_stance_m, &growth),
+        .step_time_s = model->config.foresight_s,
     };
-    saddle_recovery_step(config, body, &to_catch, &verdict->recovery);
+    saddle_recovery_step(model, &target, &verdict->recovery);
 }
 
 /* The step that a steady walk makes on the stance foot, after a step as the last one was. Who is
  * faster than the ceiling makes steps of full reach. */
-static saddle_step_t nominal_step(const saddle_config_t *config, const saddle_body_t *body,
-                                  const saddle_step_tracker_t *steps, float speed_m_s)
+static saddle_step_t nominal_step(const saddle_model_t *model, const saddle_step_tracker_t *steps,
+                                  float speed_m_s)
 {
     const saddle_side_t stance = (saddle_side_t)steps->stance;
     const saddle_side_t foot = saddle_other_side(stance);
-    const float walked_m_s = saddle_clamp(speed_m_s, 0.0f, body->speed_ceiling_m_s);
+    const float walked_m_s = saddle_clamp(speed_m_s, 0.0f, model->body.speed_ceiling_m_s);
     const float half_step_m =
-        saddle_position_to_m(saddle_half_step(config, foot, saddle_speed_from_m_s(walked_m_s)));
-    const float width_m = saddle_step_width_m(config, speed_m_s);
+        saddle_position_to_m(saddle_half_step(model, foot, saddle_speed_from_m_s(walked_m_s)));
+    const float width_m = saddle_step_width_m(model, speed_m_s);
     const bool stepped = steps->half_step_known && steps->half_step_m > HALF_STEP_MIN_M;
     const float last_width_m =
         stepped ? saddle_clamp(steps->step_width_m, 0.5f * width_m, 2.0f * width_m) : width_m;
@@ -121,7 +109,7 @@ static saddle_step_t nominal_step(const saddle_config_t *config, const saddle_bo
         .speed_m_s = speed_m_s,
         .half_behind_m = stepped ? steps->half_step_m : half_step_m,
         .width_behind_m = last_width_m,
-        .landing_m = {2.0f * half_step_m, foot == SADDLE_LEFT ? last_width_m : -last_width_m},
+        .landing_m = {2.0f * half_step_m, saddle_outward(foot) * last_width_m},
     };
     return step;
 }
@@ -130,74 +118,72 @@ static saddle_step_t nominal_step(const saddle_config_t *config, const saddle_bo
 static bool on_planned_step(const saddle_wearer_t *wearer, const saddle_intent_t *intent)
 {
     const saddle_measurement_t *measurement = wearer->measurement;
-    const bool both = measurement->foot[SADDLE_LEFT].contact &&
-                      measurement->foot[SADDLE_RIGHT].contact;
+    const bool both =
+        measurement->foot[SADDLE_LEFT].contact && measurement->foot[SADDLE_RIGHT].contact;
     return intent->walking && (both || wearer->steps->stance == (uint8_t)intent->step.stance);
 }
 
 /* What the deviation now will have become when the foot lands: in the BoS expected there. */
-static void predict(const saddle_config_t *config, const saddle_body_t *body,
-                    const saddle_expectation_t *expected, saddle_vec2_t deviation_m,
-                    const saddle_growth_t *growth, saddle_verdict_t *verdict)
+static void predict(const saddle_model_t *model, const saddle_expectation_t *expected,
+                    saddle_vec2_t deviation_m, const saddle_growth_t *growth,
+                    saddle_verdict_t *verdict)
 {
     const saddle_vec2_t landed_m[2] = {{0.0f, 0.0f}, expected->landing_m};
-    const saddle_bos_t ebos = saddle_bos(landed_m, config->cop_range_m, config->bos_factor);
+    const saddle_bos_t ebos =
+        saddle_bos(landed_m, model->config.cop_range_m, model->config.bos_factor);
     const saddle_vec2_t xcom_deviation_m = verdict->xcom_deviation_m;
     const saddle_vec2_t grown_m = {saddle_grown_m(deviation_m.x, xcom_deviation_m.x, growth),
                                    saddle_grown_m(deviation_m.y, xcom_deviation_m.y, growth)};
-    const saddle_vec2_t grown_xcom_m = {growth->factor * xcom_deviation_m.x,
-                                        growth->factor * xcom_deviation_m.y};
-    verdict->ebos_com_m = saddle_bos_margin_m(&ebos, plus(expected->landing.com_m, grown_m));
-    verdict->ebos_xcom_m =
-        saddle_bos_margin_m(&ebos, plus(xcom_of(body, &expected->landing), grown_xcom_m));
+    const saddle_vec2_t grown_xcom_m = saddle_vec2_scale(growth->factor, xcom_deviation_m);
+    verdict->ebos_com_m =
+        saddle_bos_margin_m(&ebos, saddle_vec2_add(expected->landing.com_m, grown_m));
+    verdict->ebos_xcom_m = saddle_bos_margin_m(
+        &ebos, saddle_vec2_add(xcom_of(model, &expected->landing), grown_xcom_m));
 }
 
 /* Against a step, in the phase where its CoM is x_m from the stance foot. */
-static void compare_step(const saddle_config_t *config, const saddle_body_t *body,
-                         const saddle_wearer_t *wearer, const nominal_t *nominal,
-                         saddle_verdict_t *verdict)
+static void compare_step(const saddle_model_t *model, const saddle_wearer_t *wearer,
+                         const nominal_t *nominal, saddle_verdict_t *verdict)
 {
     const saddle_posture_t *posture = wearer->posture;
     const saddle_side_t stance = nominal->step.stance;
     const saddle_side_t other = saddle_other_side(stance);
-    const saddle_expectation_t expected = saddle_expect(config, &nominal->step, nominal->x_m);
+    const saddle_expectation_t expected = saddle_expect(model, &nominal->step, nominal->x_m);
     const saddle_vec2_t stance_m = posture->cop_m[stance];
-    const saddle_vec2_t trailing_m = less(posture->cop_m[other], stance_m);
-    const saddle_com_state_t planned = {plus(stance_m, expected.now.com_m),
+    const saddle_vec2_t trailing_m = saddle_vec2_sub(posture->cop_m[other], stance_m);
+    const saddle_com_state_t planned = {saddle_vec2_add(stance_m, expected.now.com_m),
                                         expected.now.velocity_m_s};
     const saddle_growth_t growth =
-        saddle_growth(body, expected.time_s, wearer->measurement->foot[other].contact);
-    compare_state(config, body, wearer, &planned, verdict);
-    predict(config, body, &expected, less(posture->com_m, planned.com_m), &growth, verdict);
-    const saddle_catch_t to_catch = {
+        saddle_growth(model, expected.time_s, wearer->measurement->foot[other].contact);
+    compare_state(model, wearer, &planned, verdict);
+    predict(model, &expected, saddle_vec2_sub(posture->com_m, planned.com_m), &growth, verdict);
+    const saddle_recovery_target_t target = {
         .stance = stance,
         .landing_m = expected.landing_m,
-        .xcom_m = xcom_of(body, &expected.landing),
-        .departure_m =
-            least_deviation_m(config, verdict->xcom_deviation_m, trailing_m, &growth),
+        .xcom_m = xcom_of(model, &expected.landing),
+        .departure_m = least_deviation_m(model, verdict->xcom_deviation_m, trailing_m, &growth),
         .step_time_s = expected.step_time_s,
     };
-    saddle_recovery_step(config, body, &to_catch, &verdict->recovery);
+    saddle_recovery_step(model, &target, &verdict->recovery);
 }
 
-void saddle_compare(const saddle_config_t *config, const saddle_body_t *body,
-                    const saddle_wearer_t *wearer, const saddle_intent_t *intent,
-                    saddle_verdict_t *verdict)
+void saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
+                    const saddle_intent_t *intent, saddle_verdict_t *verdict)
 {
     const saddle_step_tracker_t *steps = wearer->steps;
     if (on_planned_step(wearer, intent)) {
         const nominal_t planned = {intent->step, intent->com.com_m.x};
-        compare_step(config, body, wearer, &planned, verdict);
+        compare_step(model, wearer, &planned, verdict);
         return;
     }
     const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
     const float speed_m_s = intent->leads ? intent->step.speed_m_s : steps->v_comp_m_s;
     if (walks && saddle_in_range(speed_m_s, SPEED_MIN_M_S, SPEED_MAX_M_S)) {
         const saddle_posture_t *posture = wearer->posture;
-        nominal_t own = {.step = nominal_step(config, body, steps, speed_m_s)};
+        nominal_t own = {.step = nominal_step(model, steps, speed_m_s)};
         own.x_m = posture->com_m.x - posture->cop_m[own.step.stance].x;
-        compare_step(config, body, wearer, &own, verdict);
+        compare_step(model, wearer, &own, verdict);
     } else if (!walks && (intent->leads || steps->stands)) {
-        compare_standing(config, body, wearer, &intent->com, verdict);
+        compare_standing(model, wearer, &intent->com, verdict);
     }
 }

@@ -127,14 +127,14 @@ static float field_value(const saddle_config_t *config, const saddle_config_fiel
     return *(const float *)(const void *)((const char *)config + field->offset);
 }
 
-static float sloped_width_m(const saddle_config_t *config, float speed_m_s)
+float saddle_regressed_half_step_m(const saddle_config_t *config, float speed_m_s)
 {
-    return config->step_width_slope_s * speed_m_s + config->step_width_intercept_m;
+    return config->half_step_slope_s * speed_m_s + config->half_step_intercept_m;
 }
 
-static float larger(float a, float b)
+float saddle_regressed_width_m(const saddle_config_t *config, float speed_m_s)
 {
-    return a > b ? a : b;
+    return config->step_width_slope_s * speed_m_s + config->step_width_intercept_m;
 }
 
 static const char *check_step_width(const saddle_config_t *config)
@@ -142,8 +142,8 @@ static const char *check_step_width(const saddle_config_t *config)
     if (config->step_width_slow_speed_m_s > config->step_width_fast_speed_m_s) {
         return "step_width_slow_speed_m_s";
     }
-    if (sloped_width_m(config, config->step_width_slow_speed_m_s) < WIDTH_MIN_M ||
-        sloped_width_m(config, config->step_width_fast_speed_m_s) < WIDTH_MIN_M) {
+    if (saddle_regressed_width_m(config, config->step_width_slow_speed_m_s) < WIDTH_MIN_M ||
+        saddle_regressed_width_m(config, config->step_width_fast_speed_m_s) < WIDTH_MIN_M) {
         return "step_width_slope_s";
     }
     return NULL;
@@ -151,7 +151,8 @@ static const char *check_step_width(const saddle_config_t *config)
 
 float saddle_longer_step_factor(const saddle_config_t *config)
 {
-    return larger(1.0f, larger(config->step_length_factor_left, config->step_length_factor_right));
+    return saddle_larger(
+        1.0f, saddle_larger(config->step_length_factor_left, config->step_length_factor_right));
 }
 
 /* The reach peak_speed / (2 w_n) must exceed the shortest half step, on the longer side, and the
@@ -159,15 +160,14 @@ float saddle_longer_step_factor(const saddle_config_t *config)
 static const char *check_reach(const saddle_config_t *config)
 {
     const float pendulum_m = config->pendulum_ratio * config->body_height_m;
-    const float reach_m2 = config->peak_speed_m_s * config->peak_speed_m_s * pendulum_m /
-                           (4.0f * SADDLE_GRAVITY_M_S2);
-    const float shortest_m =
-        saddle_longer_step_factor(config) * 1.05f *
-        (config->half_step_slope_s * CEILING_MIN_M_S + config->half_step_intercept_m);
-    const float width_m =
-        larger(larger(config->step_width_slow_m, config->step_width_fast_m),
-               larger(sloped_width_m(config, config->step_width_slow_speed_m_s),
-                      sloped_width_m(config, config->step_width_fast_speed_m_s)));
+    const float reach_m2 =
+        config->peak_speed_m_s * config->peak_speed_m_s * pendulum_m / (4.0f * SADDLE_GRAVITY_M_S2);
+    const float shortest_m = saddle_longer_step_factor(config) * 1.05f *
+                             saddle_regressed_half_step_m(config, CEILING_MIN_M_S);
+    const float width_m = saddle_larger(
+        saddle_larger(config->step_width_slow_m, config->step_width_fast_m),
+        saddle_larger(saddle_regressed_width_m(config, config->step_width_slow_speed_m_s),
+                      saddle_regressed_width_m(config, config->step_width_fast_speed_m_s)));
     if (reach_m2 < shortest_m * shortest_m) {
         return "half_step_intercept_m";
     }

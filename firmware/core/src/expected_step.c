@@ -1,6 +1,7 @@
 #include <saddlewalk/com_path.h>
 #include <saddlewalk/expected_step.h>
 #include <saddlewalk/saddle_math.h>
+#include <saddlewalk/vec2.h>
 
 /* A step that ends beside the stance foot still has a quarter with a shape. */
 #define QUARTER_MIN_M 1.0e-3f
@@ -22,7 +23,7 @@ static saddle_com_state_t state_at(const saddle_quarter_t *quarter, float speed_
 /* The same where the foot lands: midway between the feet. */
 static saddle_com_state_t state_at_saddle(const saddle_quarter_t *quarter, float speed_m_s)
 {
-    const float outward = quarter->stance == SADDLE_LEFT ? 1.0f : -1.0f;
+    const float outward = saddle_outward(quarter->stance);
     const float slope = -outward * quarter->amplitude_m * SADDLE_HALF_PI / quarter->length_m;
     const saddle_com_state_t state = {
         .com_m = {quarter->length_m, -outward * 0.5f * quarter->width_m},
@@ -31,14 +32,14 @@ static saddle_com_state_t state_at_saddle(const saddle_quarter_t *quarter, float
     return state;
 }
 
-saddle_expectation_t saddle_expect(const saddle_config_t *config, const saddle_step_t *step,
+saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
                                    float x_m)
 {
     const float half_ahead_m = 0.5f * step->landing_m.x;
-    const saddle_quarter_t behind = saddle_quarter(config, step->stance, step->half_behind_m,
+    const saddle_quarter_t behind = saddle_quarter(model, step->stance, step->half_behind_m,
                                                    step->width_behind_m, step->speed_m_s);
     const saddle_quarter_t ahead = saddle_quarter(
-        config, step->stance, half_ahead_m > QUARTER_MIN_M ? half_ahead_m : QUARTER_MIN_M,
+        model, step->stance, half_ahead_m > QUARTER_MIN_M ? half_ahead_m : QUARTER_MIN_M,
         saddle_magnitude(step->landing_m.y), step->speed_m_s);
     const float phase_m = saddle_clamp(x_m, -step->half_behind_m, half_ahead_m);
     saddle_expectation_t expected;
@@ -48,14 +49,14 @@ saddle_expectation_t saddle_expect(const saddle_config_t *config, const saddle_s
                            : state_at(&ahead, step->speed_m_s, half_ahead_m);
     expected.landing_m = step->landing_m;
     expected.time_s =
-        saddle_clamp((half_ahead_m - phase_m) / step->speed_m_s, 0.0f, config->foresight_s);
+        saddle_clamp((half_ahead_m - phase_m) / step->speed_m_s, 0.0f, model->config.foresight_s);
     expected.step_time_s = (half_ahead_m + step->half_behind_m) / step->speed_m_s;
     return expected;
 }
 
-saddle_growth_t saddle_growth(const saddle_body_t *body, float time_s, bool trailing)
+saddle_growth_t saddle_growth(const saddle_model_t *model, float time_s, bool trailing)
 {
-    const float w = body->natural_frequency_rad_s;
+    const float w = model->body.natural_frequency_rad_s;
     const float carried_s = time_s < TRAILING_S ? time_s : TRAILING_S;
     saddle_growth_t growth;
     growth.factor = saddle_exp(w * time_s);

@@ -2,55 +2,54 @@
 #include <saddlewalk/saddle_math.h>
 
 /* A score that a walk is judged by and that is too low. */
-static saddle_reason_t low_score(const saddle_config_t *config, uint32_t faults,
+static saddle_reason_t low_score(const saddle_model_t *model, uint32_t faults,
                                  const saddle_scores_t *scores)
 {
     const bool steps = saddle_scores_hold(scores, (uint32_t)SADDLE_VALID_STEP);
     if ((faults & (uint32_t)SADDLE_FAULT_SPEED_INFEASIBLE) != 0u) {
         return SADDLE_REASON_SPEED;
     }
-    if (steps && scores->s_pend < config->caution_score) {
+    if (steps && scores->s_pend < model->config.caution_score) {
         return SADDLE_REASON_S_PEND;
     }
-    if (steps && scores->s_jump < config->caution_score) {
+    if (steps && scores->s_jump < model->config.caution_score) {
         return SADDLE_REASON_S_JUMP;
     }
     if (saddle_scores_hold(scores, (uint32_t)SADDLE_VALID_S_SW) &&
-        scores->s_sw < config->caution_score) {
+        scores->s_sw < model->config.caution_score) {
         return SADDLE_REASON_S_SW;
     }
     return SADDLE_REASON_NONE;
 }
 
-static saddle_reason_t departure(const saddle_config_t *config, const saddle_verdict_t *verdict)
+static saddle_reason_t departure(const saddle_model_t *model, const saddle_verdict_t *verdict)
 {
-    if (saddle_magnitude(verdict->xcom_deviation_m.x) > config->caution_xcom_ap_m) {
+    if (saddle_magnitude(verdict->xcom_deviation_m.x) > model->config.caution_xcom_ap_m) {
         return SADDLE_REASON_XCOM_AP;
     }
-    if (saddle_magnitude(verdict->xcom_deviation_m.y) > config->caution_xcom_ml_m) {
+    if (saddle_magnitude(verdict->xcom_deviation_m.y) > model->config.caution_xcom_ml_m) {
         return SADDLE_REASON_XCOM_ML;
     }
     return verdict->on_track ? SADDLE_REASON_NONE : SADDLE_REASON_OFF_TRACK;
 }
 
-static saddle_reason_t reason_of(const saddle_config_t *config, uint32_t faults,
-                                 const saddle_scores_t *scores,
-                                 const saddle_verdict_t *verdict)
+static saddle_reason_t reason_of(const saddle_model_t *model, uint32_t faults,
+                                 const saddle_scores_t *scores, const saddle_verdict_t *verdict)
 {
-    const uint32_t unusable = SADDLE_FAULTS_COM | SADDLE_FAULTS_FEET |
-                              (uint32_t)SADDLE_FAULT_FEET_TOGETHER;
+    const uint32_t unusable =
+        SADDLE_FAULTS_COM | SADDLE_FAULTS_FEET | (uint32_t)SADDLE_FAULT_FEET_TOGETHER;
     if ((faults & unusable) != 0u) {
         return SADDLE_REASON_INPUT;
     }
     if (!verdict->compared) {
         return SADDLE_REASON_NO_WALK;
     }
-    const bool stays = scores->can_stop && scores->mos_xcom_m >= config->stop_margin_m;
+    const bool stays = scores->can_stop && scores->mos_xcom_m >= model->config.stop_margin_m;
     if (!stays && !verdict->recovery.found) {
         return SADDLE_REASON_NO_STEP;
     }
-    const saddle_reason_t low = low_score(config, faults, scores);
-    return low != SADDLE_REASON_NONE ? low : departure(config, verdict);
+    const saddle_reason_t low = low_score(model, faults, scores);
+    return low != SADDLE_REASON_NONE ? low : departure(model, verdict);
 }
 
 static saddle_level_t level_of(saddle_reason_t reason)
@@ -81,16 +80,16 @@ static void count_levels(saddle_level_state_t *state, uint8_t level)
 
 /* The worst level that has been reached or passed for long enough; the best one likewise if that is
  * better than the announced one. The announced one if neither has. */
-static uint8_t level_held(const saddle_level_state_t *state, const saddle_config_t *config)
+static uint8_t level_held(const saddle_level_state_t *state, const saddle_model_t *model)
 {
     const uint8_t announced = state->level;
     for (uint8_t i = SADDLE_LEVEL_UNSTABLE; i > announced && i > 0u; i--) {
-        if ((float)state->at_least_ticks[i] >= config->level_hold_ticks) {
+        if ((float)state->at_least_ticks[i] >= model->config.level_hold_ticks) {
             return i;
         }
     }
     for (uint8_t i = SADDLE_LEVEL_STABLE; i < announced; i++) {
-        if ((float)state->at_most_ticks[i] >= config->level_hold_ticks) {
+        if ((float)state->at_most_ticks[i] >= model->config.level_hold_ticks) {
             return i;
         }
     }
@@ -98,21 +97,19 @@ static uint8_t level_held(const saddle_level_state_t *state, const saddle_config
 }
 
 /* Why the announced level is that, whatever this tick's own reason is. */
-static saddle_reason_t announced_reason(const saddle_level_state_t *state,
-                                        saddle_reason_t reason)
+static saddle_reason_t announced_reason(const saddle_level_state_t *state, saddle_reason_t reason)
 {
     switch (state->level) {
     case SADDLE_LEVEL_STABLE: return SADDLE_REASON_NONE;
     case SADDLE_LEVEL_CAUTION: return (saddle_reason_t)state->caution_reason;
     case SADDLE_LEVEL_UNSTABLE: return SADDLE_REASON_NO_STEP;
-    default:
-        return level_of(reason) == SADDLE_LEVEL_UNKNOWN ? reason : SADDLE_REASON_SETTLING;
+    default: return level_of(reason) == SADDLE_LEVEL_UNKNOWN ? reason : SADDLE_REASON_SETTLING;
     }
 }
 
 /* A level is announced once it, or a worse one, has held for long enough, a better one likewise;
  * unknown at once. */
-static void announce(saddle_level_state_t *state, const saddle_config_t *config,
+static void announce(saddle_level_state_t *state, const saddle_model_t *model,
                      saddle_reason_t reason)
 {
     const saddle_level_t level = level_of(reason);
@@ -120,16 +117,14 @@ static void announce(saddle_level_state_t *state, const saddle_config_t *config,
     if (level == SADDLE_LEVEL_CAUTION) {
         state->caution_reason = (uint8_t)reason;
     }
-    state->level = level == SADDLE_LEVEL_UNKNOWN ? (uint8_t)level
-                                                      : level_held(state, config);
+    state->level = level == SADDLE_LEVEL_UNKNOWN ? (uint8_t)level : level_held(state, model);
     state->reason = (uint8_t)announced_reason(state, reason);
 }
 
-void saddle_level_update(saddle_level_state_t *state, const saddle_config_t *config,
-                         uint32_t faults, const saddle_scores_t *scores,
-                         saddle_verdict_t *verdict)
+void saddle_level_update(saddle_level_state_t *state, const saddle_model_t *model, uint32_t faults,
+                         const saddle_scores_t *scores, saddle_verdict_t *verdict)
 {
-    announce(state, config, reason_of(config, faults, scores, verdict));
+    announce(state, model, reason_of(model, faults, scores, verdict));
     verdict->level = state->level;
     verdict->reason = state->reason;
 }

@@ -1,8 +1,8 @@
 #include <saddlewalk/measurement.h>
 #include <saddlewalk/saddle_math.h>
+#include <saddlewalk/vec2.h>
 
 /* Beyond these a measurement of a person who stands or walks is absurd. */
-#define KNEE_HEIGHT 0.285f /* of the body's height: Drillis and Contini 1966 */
 #define COM_SPEED_MAX_M_S 6.0f
 #define COP_DISTANCE_MAX_M 2.5f
 
@@ -37,29 +37,24 @@ static bool same(saddle_vec2_t a, saddle_vec2_t b)
     return a.x == b.x && a.y == b.y;
 }
 
-static bool older(uint32_t age_us, float max_age_s)
+static uint32_t judge_com(const saddle_model_t *model, const saddle_measurement_t *measurement)
 {
-    return (float)age_us > max_age_s * 1.0e6f;
-}
-
-static uint32_t judge_com(const saddle_config_t *config, const saddle_measurement_t *measurement)
-{
-    const float height_m = config->body_height_m;
-    if (older(measurement->com.age_us, config->com_max_age_s)) {
+    if ((float)measurement->com.age_us > model->body.com_max_age_us) {
         return (uint32_t)SADDLE_FAULT_COM_STALE;
     }
-    if (!saddle_in_range(measurement->com.height_m, KNEE_HEIGHT * height_m, height_m) ||
+    if (!saddle_in_range(measurement->com.height_m, model->body.com_height_min_m,
+                         model->config.body_height_m) ||
         !vec2_within(measurement->com.velocity_m_s, COM_SPEED_MAX_M_S)) {
         return (uint32_t)SADDLE_FAULT_COM_RANGE;
     }
     return 0;
 }
 
-static uint32_t judge_foot(const saddle_config_t *config, const saddle_measurement_t *measurement,
+static uint32_t judge_foot(const saddle_model_t *model, const saddle_measurement_t *measurement,
                            saddle_side_t side)
 {
     const bool left = side == SADDLE_LEFT;
-    if (older(measurement->foot[side].age_us, config->foot_max_age_s)) {
+    if ((float)measurement->foot[side].age_us > model->body.foot_max_age_us) {
         return (uint32_t)(left ? SADDLE_FAULT_LEFT_STALE : SADDLE_FAULT_RIGHT_STALE);
     }
     if (!vec2_within(measurement->foot[side].cop_m, COP_DISTANCE_MAX_M)) {
@@ -77,12 +72,11 @@ static void follow_still(saddle_still_t *still, bool unchanged, saddle_vec2_t ve
         return;
     }
     still->still_s += dt_s;
-    still->way_m.x += velocity_m_s.x * dt_s;
-    still->way_m.y += velocity_m_s.y * dt_s;
+    still->way_m = saddle_vec2_add(still->way_m, saddle_vec2_scale(dt_s, velocity_m_s));
 }
 
 /* The CoM moved over a foot whose place relative to it did not. */
-static bool foot_frozen(saddle_watch_t *watch, const saddle_config_t *config,
+static bool foot_frozen(saddle_watch_t *watch, const saddle_model_t *model,
                         const saddle_measurement_t *measurement, saddle_side_t side, float dt_s)
 {
     saddle_still_t *still = &watch->foot_still[side];
@@ -90,25 +84,25 @@ static bool foot_frozen(saddle_watch_t *watch, const saddle_config_t *config,
     const bool unchanged = same(measurement->foot[side].cop_m, watch->cop_m[side]) &&
                            !vec2_within(velocity_m_s, REST_M_S);
     follow_still(still, unchanged, velocity_m_s, dt_s);
-    return still->still_s > config->foot_max_age_s && !vec2_within(still->way_m, FROZEN_WAY_M);
+    return still->still_s > model->config.foot_max_age_s &&
+           !vec2_within(still->way_m, FROZEN_WAY_M);
 }
 
 /* A foot on the ground is where it was, if the CoM went the way that its velocity says. */
 static bool contradicts(saddle_vec2_t *anchor_m, bool anchored, saddle_vec2_t cop_m,
-                        saddle_vec2_t way_m)
+                        saddle_vec2_t distance_m)
 {
-    const saddle_vec2_t place_m = {cop_m.x + way_m.x, cop_m.y + way_m.y};
+    const saddle_vec2_t place_m = saddle_vec2_add(cop_m, distance_m);
     if (!anchored) {
         *anchor_m = place_m;
         return false;
     }
-    const saddle_vec2_t amiss_m = {place_m.x - anchor_m->x, place_m.y - anchor_m->y};
-    return !vec2_within(amiss_m, FROZEN_WAY_M);
+    return !vec2_within(saddle_vec2_sub(place_m, *anchor_m), FROZEN_WAY_M);
 }
 
 /* The CoM kept its bits, and a foot on the ground went another way than they say, or a walk was
  * planned: nobody walks without a change. */
-static bool com_frozen(saddle_watch_t *watch, const saddle_config_t *config,
+static bool com_frozen(saddle_watch_t *watch, const saddle_model_t *model,
                        const saddle_measurement_t *measurement, float planned_m_s, float dt_s)
 {
     saddle_still_t *still = &watch->com_still;
@@ -116,8 +110,8 @@ static bool com_frozen(saddle_watch_t *watch, const saddle_config_t *config,
                            same(measurement->com.velocity_m_s, watch->velocity_m_s);
     follow_still(still, unchanged, measurement->com.velocity_m_s, dt_s);
     watch->planned_way_m = unchanged ? watch->planned_way_m + planned_m_s * dt_s : 0.0f;
-    watch->com_contradicted = (watch->com_contradicted && unchanged) ||
-                              watch->planned_way_m > FROZEN_WAY_M;
+    watch->com_contradicted =
+        (watch->com_contradicted && unchanged) || watch->planned_way_m > FROZEN_WAY_M;
     for (int side = 0; side < 2; side++) {
         const bool contact = measurement->foot[side].contact;
         const bool anchored = unchanged && contact && watch->stood[side];
@@ -127,21 +121,20 @@ static bool com_frozen(saddle_watch_t *watch, const saddle_config_t *config,
             watch->com_contradicted = true;
         }
     }
-    return watch->com_contradicted && still->still_s > config->com_max_age_s;
+    return watch->com_contradicted && still->still_s > model->config.com_max_age_s;
 }
 
-static uint32_t judge_alive(saddle_watch_t *watch, const saddle_config_t *config,
-                            const saddle_measurement_t *measurement, float planned_m_s,
-                            float dt_s)
+static uint32_t judge_alive(saddle_watch_t *watch, const saddle_model_t *model,
+                            const saddle_measurement_t *measurement, float planned_m_s, float dt_s)
 {
     uint32_t faults = 0;
-    if (com_frozen(watch, config, measurement, planned_m_s, dt_s)) {
+    if (com_frozen(watch, model, measurement, planned_m_s, dt_s)) {
         faults |= (uint32_t)SADDLE_FAULT_COM_FROZEN;
     }
-    if (foot_frozen(watch, config, measurement, SADDLE_LEFT, dt_s)) {
+    if (foot_frozen(watch, model, measurement, SADDLE_LEFT, dt_s)) {
         faults |= (uint32_t)SADDLE_FAULT_LEFT_FROZEN;
     }
-    if (foot_frozen(watch, config, measurement, SADDLE_RIGHT, dt_s)) {
+    if (foot_frozen(watch, model, measurement, SADDLE_RIGHT, dt_s)) {
         faults |= (uint32_t)SADDLE_FAULT_RIGHT_FROZEN;
     }
     watch->velocity_m_s = measurement->com.velocity_m_s;
@@ -164,7 +157,7 @@ static void forget_still(saddle_watch_t *watch)
     }
 }
 
-static uint32_t judge_feet(saddle_watch_t *watch, const saddle_config_t *config,
+static uint32_t judge_feet(saddle_watch_t *watch, const saddle_model_t *model,
                            const saddle_measurement_t *measurement, float dt_s)
 {
     const float width_m =
@@ -173,26 +166,26 @@ static uint32_t judge_feet(saddle_watch_t *watch, const saddle_config_t *config,
         !measurement->foot[SADDLE_LEFT].contact && !measurement->foot[SADDLE_RIGHT].contact;
     watch->flight_s = flight ? watch->flight_s + dt_s : 0.0f;
     uint32_t faults = 0;
-    if (watch->flight_s > config->flight_max_s) {
+    if (watch->flight_s > model->config.flight_max_s) {
         faults |= (uint32_t)SADDLE_FAULT_AIRBORNE;
     }
-    if (width_m < -config->crossing_max_m) {
+    if (width_m < -model->config.crossing_max_m) {
         faults |= (uint32_t)SADDLE_FAULT_FEET_CROSSED;
     }
     return faults;
 }
 
-uint32_t saddle_judge(saddle_watch_t *watch, const saddle_config_t *config,
+uint32_t saddle_judge(saddle_watch_t *watch, const saddle_model_t *model,
                       const saddle_measurement_t *measurement, float planned_m_s, float dt_s)
 {
-    const uint32_t feet = judge_foot(config, measurement, SADDLE_LEFT) |
-                          judge_foot(config, measurement, SADDLE_RIGHT);
-    uint32_t faults = judge_com(config, measurement) | feet;
+    const uint32_t feet =
+        judge_foot(model, measurement, SADDLE_LEFT) | judge_foot(model, measurement, SADDLE_RIGHT);
+    uint32_t faults = judge_com(model, measurement) | feet;
     if (feet == 0u) {
-        faults |= judge_feet(watch, config, measurement, dt_s);
+        faults |= judge_feet(watch, model, measurement, dt_s);
     }
     if ((faults & (SADDLE_FAULTS_COM | SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT)) == 0u) {
-        faults |= judge_alive(watch, config, measurement, planned_m_s, dt_s);
+        faults |= judge_alive(watch, model, measurement, planned_m_s, dt_s);
     } else {
         forget_still(watch);
     }

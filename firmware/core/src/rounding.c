@@ -8,7 +8,8 @@
 #error "Saddlewalk: -ffinite-math-only removes its checks for NaN"
 #endif
 #if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
-#error "Saddlewalk: float must be evaluated as float; on 32-bit x86 compile with -msse2 -mfpmath=sse"
+#error                                                                                             \
+    "Saddlewalk: float must be evaluated as float; on 32-bit x86 compile with -msse2 -mfpmath=sse"
 #endif
 
 /* 1 + 2^-12 and 1 + 3 x 2^-12: with the first as factor, their products lie half-way between
@@ -34,6 +35,6 @@ bool saddle_rounds_as_written(void)
     const float x = factor;
     const float y = other_factor;
     const float z = large;
-    return x * x - PRODUCT_DOWN == 0.0f && x * y - PRODUCT_UP == 0.0f &&
-           (z + 1.0f) - z == 0.0f && five / 3.0f == FIVE_THIRDS;
+    return x * x - PRODUCT_DOWN == 0.0f && x * y - PRODUCT_UP == 0.0f && (z + 1.0f) - z == 0.0f &&
+           five / 3.0f == FIVE_THIRDS;
 }

@@ -15,30 +15,32 @@ static const float LN2_LO = 1.42860677e-06f;
 
 /* sin r = r + r z S(z), z = r^2, |r| <= pi/4; relative: 8.3e-09 */
 static const float SIN[] = {
-    -1.66666552e-01f, 8.33216030e-03f, -1.95152825e-04f,
+    -1.66666552e-01f,
+    8.33216030e-03f,
+    -1.95152825e-04f,
 };
 
 /* cos r = 1 - z/2 + z^2 C(z), z = r^2, |r| <= pi/4; absolute: 5.1e-10 */
 static const float COS[] = {
-    4.16666456e-02f, -1.38873677e-03f, 2.44384519e-05f,
+    4.16666456e-02f,
+    -1.38873677e-03f,
+    2.44384519e-05f,
 };
 
 /* asin s = s + s z A(z), z = s^2, 0 <= s <= 1/2; relative: 5.8e-09 */
 static const float ASIN[] = {
-    1.66667521e-01f, 7.49529749e-02f, 4.54703793e-02f, 2.41795015e-02f,
-    4.21663262e-02f,
+    1.66667521e-01f, 7.49529749e-02f, 4.54703793e-02f, 2.41795015e-02f, 4.21663262e-02f,
 };
 
 /* exp r - 1 = r + r^2 E(r), |r| <= ln(2)/2; relative: 1.7e-08 */
 static const float EXPM1[] = {
-    4.99999970e-01f, 1.66665435e-01f, 4.16672006e-02f, 8.36651400e-03f,
-    1.38825248e-03f,
+    4.99999970e-01f, 1.66665435e-01f, 4.16672006e-02f, 8.36651400e-03f, 1.38825248e-03f,
 };
 
 /* erf a = 1 - exp(a Q(a)), 0 <= a <= 4; relative: 5.2e-08 */
 static const float ERF[] = {
     -1.12837923e+00f, -6.36616468e-01f, -1.02814414e-01f, 1.93217173e-02f,
-    -2.05717748e-04f, -1.25174515e-03f, 3.81000049e-04f, -4.07078333e-05f,
+    -2.05717748e-04f, -1.25174515e-03f, 3.81000049e-04f,  -4.07078333e-05f,
 };
 
 static const float EXP_LOWEST = -87.0f;
@@ -129,8 +131,7 @@ static exp_parts_t exp_parts(float x)
     const int32_t biased_exponent = (int32_t)(x * LOG2_E + 127.5f);
     const float k = (float)(biased_exponent - 127);
     const float r = (x - k * LN2_HI) - k * LN2_LO;
-    const float poly =
-        (((EXPM1[4] * r + EXPM1[3]) * r + EXPM1[2]) * r + EXPM1[1]) * r + EXPM1[0];
+    const float poly = (((EXPM1[4] * r + EXPM1[3]) * r + EXPM1[2]) * r + EXPM1[1]) * r + EXPM1[0];
     const union {
         uint32_t bits;
         float value;

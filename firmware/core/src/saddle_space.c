@@ -1,16 +1,12 @@
 #include <math.h>
 #include <saddlewalk/saddle_math.h>
 #include <saddlewalk/saddle_space.h>
+#include <saddlewalk/vec2.h>
 
 #define HALF_VERTICES (SADDLE_BOS_VERTICES / 2)
 
 /* Slower counts as at rest. */
 #define REST_M_S 1.0e-4f
-
-static float length_m(float x_m, float y_m)
-{
-    return sqrtf(x_m * x_m + y_m * y_m);
-}
 
 saddle_bos_t saddle_bos_undefined(void)
 {
@@ -28,17 +24,15 @@ saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m, float 
 {
     const saddle_vec2_t left = cop_m[SADDLE_LEFT];
     const saddle_vec2_t right = cop_m[SADDLE_RIGHT];
-    const float dx_m = left.x - right.x;
-    const float dy_m = left.y - right.y;
-    const float distance_m = length_m(dx_m, dy_m);
+    const saddle_vec2_t apart_m = saddle_vec2_sub(left, right);
+    const float distance_m = saddle_vec2_length(apart_m);
     if (distance_m < SADDLE_FEET_DISTANCE_MIN_M) {
         return saddle_bos_undefined();
     }
     saddle_bos_t bos;
-    bos.centre_m.x = 0.5f * (left.x + right.x);
-    bos.centre_m.y = 0.5f * (left.y + right.y);
-    bos.axis_x.x = dy_m / distance_m;
-    bos.axis_x.y = -dx_m / distance_m;
+    bos.centre_m = saddle_vec2_scale(0.5f, saddle_vec2_add(left, right));
+    bos.axis_x.x = apart_m.y / distance_m;
+    bos.axis_x.y = -apart_m.x / distance_m;
     bos.radius_m = factor * 0.5f * distance_m;
     bos.half_depth_m = factor * half_depth_m;
     bos.defined = true;
@@ -46,11 +40,10 @@ saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m, float 
 }
 
 /* Task space to saddle space, directions and places alike once the centre is taken off. */
-static saddle_vec2_t to_saddle(const saddle_bos_t *bos, float dx, float dy)
+static saddle_vec2_t to_saddle(const saddle_bos_t *bos, saddle_vec2_t v)
 {
-    const saddle_vec2_t turned = {dx * bos->axis_x.x + dy * bos->axis_x.y,
-                                  dy * bos->axis_x.x - dx * bos->axis_x.y};
-    return turned;
+    return (saddle_vec2_t){saddle_vec2_dot(v, bos->axis_x),
+                           v.y * bos->axis_x.x - v.x * bos->axis_x.y};
 }
 
 static saddle_vec2_t to_task_m(const saddle_bos_t *bos, saddle_vec2_t saddle_m)
@@ -70,16 +63,15 @@ static float edge_half_length_m(const saddle_bos_t *bos)
 
 float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m)
 {
-    const saddle_vec2_t place_m =
-        to_saddle(bos, point_m.x - bos->centre_m.x, point_m.y - bos->centre_m.y);
+    const saddle_vec2_t place_m = to_saddle(bos, saddle_vec2_sub(point_m, bos->centre_m));
     const float x_m = saddle_magnitude(place_m.x);
     const float y_m = saddle_magnitude(place_m.y);
-    const float centre_distance_m = length_m(x_m, y_m);
+    const float centre_distance_m = saddle_vec2_length(place_m);
     const float to_arc_m = bos->radius_m - centre_distance_m;
     const float to_edge_m = bos->half_depth_m - x_m;
 
     if (to_edge_m >= 0.0f && to_arc_m >= 0.0f) {
-        return to_arc_m < to_edge_m ? to_arc_m : to_edge_m;
+        return saddle_smaller(to_arc_m, to_edge_m);
     }
     if (x_m * bos->radius_m <= bos->half_depth_m * centre_distance_m) {
         return to_arc_m;
@@ -88,24 +80,23 @@ float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m)
     if (y_m <= corner_y_m) {
         return to_edge_m;
     }
-    return -length_m(to_edge_m, y_m - corner_y_m);
+    return -saddle_vec2_length((saddle_vec2_t){to_edge_m, y_m - corner_y_m});
 }
 
 static bool is_inside(const saddle_bos_t *bos, saddle_vec2_t place_m)
 {
     return saddle_magnitude(place_m.x) <= bos->half_depth_m &&
-           place_m.x * place_m.x + place_m.y * place_m.y <= bos->radius_m * bos->radius_m;
+           saddle_vec2_dot(place_m, place_m) <= bos->radius_m * bos->radius_m;
 }
 
 /* How far the border is from an inner place along a unit direction, both in saddle space. */
 static float way_out_m(const saddle_bos_t *bos, saddle_vec2_t place_m, saddle_vec2_t direction)
 {
-    const float along_m = place_m.x * direction.x + place_m.y * direction.y;
+    const float along_m = saddle_vec2_dot(place_m, direction);
     const float inside_m2 = bos->radius_m * bos->radius_m - place_m.x * place_m.x -
                             place_m.y * place_m.y + along_m * along_m;
     const float to_arc_m = (inside_m2 > 0.0f ? sqrtf(inside_m2) : 0.0f) - along_m;
-    const float depth_m =
-        bos->half_depth_m - (direction.x > 0.0f ? place_m.x : -place_m.x);
+    const float depth_m = bos->half_depth_m - (direction.x > 0.0f ? place_m.x : -place_m.x);
     const float slope = saddle_magnitude(direction.x);
     const bool edge_first = depth_m < to_arc_m * slope;
     return edge_first ? depth_m / slope : to_arc_m;
@@ -115,12 +106,12 @@ static float way_out_m(const saddle_bos_t *bos, saddle_vec2_t place_m, saddle_ve
 static saddle_vec2_t nearest_border_m(const saddle_bos_t *bos, saddle_vec2_t place_m)
 {
     const float corner_y_m = edge_half_length_m(bos);
-    const float distance_m = length_m(place_m.x, place_m.y);
+    const float distance_m = saddle_vec2_length(place_m);
     const float x_m = saddle_magnitude(place_m.x);
     const float y_m = saddle_magnitude(place_m.y);
     const bool arc_nearer = bos->radius_m - distance_m < bos->half_depth_m - x_m;
     const bool faces_arc = x_m * bos->radius_m <= bos->half_depth_m * distance_m;
-    saddle_vec2_t border_m = {bos->half_depth_m, y_m < corner_y_m ? y_m : corner_y_m};
+    saddle_vec2_t border_m = {bos->half_depth_m, saddle_smaller(y_m, corner_y_m)};
     if (is_inside(bos, place_m) ? arc_nearer : faces_arc) {
         const float stretch = distance_m > 0.0f ? bos->radius_m / distance_m : 0.0f;
         border_m.x = distance_m > 0.0f ? stretch * x_m : bos->radius_m;
@@ -137,18 +128,15 @@ saddle_vec2_t saddle_bos_exit_m(const saddle_bos_t *bos, saddle_vec2_t point_m,
     if (!bos->defined) {
         return point_m;
     }
-    const saddle_vec2_t place_m =
-        to_saddle(bos, point_m.x - bos->centre_m.x, point_m.y - bos->centre_m.y);
-    const float speed_m_s = length_m(direction_m_s.x, direction_m_s.y);
+    const saddle_vec2_t place_m = to_saddle(bos, saddle_vec2_sub(point_m, bos->centre_m));
+    const float speed_m_s = saddle_vec2_length(direction_m_s);
     if (speed_m_s < REST_M_S || !is_inside(bos, place_m)) {
         return to_task_m(bos, nearest_border_m(bos, place_m));
     }
     const saddle_vec2_t direction =
-        to_saddle(bos, direction_m_s.x / speed_m_s, direction_m_s.y / speed_m_s);
+        to_saddle(bos, (saddle_vec2_t){direction_m_s.x / speed_m_s, direction_m_s.y / speed_m_s});
     const float way_m = way_out_m(bos, place_m, direction);
-    const saddle_vec2_t exit_m = {place_m.x + way_m * direction.x,
-                                  place_m.y + way_m * direction.y};
-    return to_task_m(bos, exit_m);
+    return to_task_m(bos, saddle_vec2_add(place_m, saddle_vec2_scale(way_m, direction)));
 }
 
 /* The arc around +y_S spans +-half_angle from y_S; a plain disc is a regular polygon. */
@@ -178,11 +166,9 @@ void saddle_bos_polygon(const saddle_bos_t *bos, saddle_vec2_t vertices_m[SADDLE
 /* From the CoP that carries, the nearer one, to the CoM. */
 static saddle_vec2_t lever_m(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m)
 {
-    const saddle_vec2_t left = {com_m.x - cop_m[SADDLE_LEFT].x, com_m.y - cop_m[SADDLE_LEFT].y};
-    const saddle_vec2_t right = {com_m.x - cop_m[SADDLE_RIGHT].x, com_m.y - cop_m[SADDLE_RIGHT].y};
-    const bool right_nearer = right.x * right.x + right.y * right.y <
-                              left.x * left.x + left.y * left.y;
-    return right_nearer ? right : left;
+    const saddle_vec2_t left = saddle_vec2_sub(com_m, cop_m[SADDLE_LEFT]);
+    const saddle_vec2_t right = saddle_vec2_sub(com_m, cop_m[SADDLE_RIGHT]);
+    return saddle_vec2_dot(right, right) < saddle_vec2_dot(left, left) ? right : left;
 }
 
 static bool pendulum_height_m(saddle_vec2_t lever, float pendulum_m, float *height_m)

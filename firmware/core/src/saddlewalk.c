@@ -1,6 +1,7 @@
 #include <saddlewalk/bytes.h>
 #include <saddlewalk/rounding.h>
 #include <saddlewalk/saddlewalk.h>
+#include <saddlewalk/vec2.h>
 
 /* Marks a context that saddle_init() has filled. */
 #define INITIALISED 0x5ADD1E00u
@@ -23,9 +24,8 @@ saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *co
     if (saddle_config_check(config) != NULL) {
         return SADDLE_ERROR_CONFIG;
     }
-    saddle_copy(&context->config, config, sizeof *config);
-    context->body = saddle_body(config);
-    saddle_planner_reset(&context->planner, config);
+    saddle_model_init(&context->model, config);
+    saddle_planner_reset(&context->planner, &context->model);
     context->initialised = INITIALISED;
     return SADDLE_OK;
 }
@@ -54,7 +54,7 @@ static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t
 {
     const uint64_t since_us = context->ticked ? time_us - context->last_time_us : 0u;
     const uint32_t aged_us = since_us < UINT32_MAX ? (uint32_t)since_us : UINT32_MAX;
-    const uint32_t limit_us = (uint32_t)(context->config.tick_max_s * 1.0e6f);
+    const uint32_t limit_us = context->model.body.tick_max_us;
     context->last_time_us = time_us;
     context->ticked = true;
     context->command_age_us = sum_us(context->command_age_us, aged_us);
@@ -62,7 +62,7 @@ static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t
         *limits |= (uint32_t)SADDLE_LIMIT_TICK_GAP;
         const float gap_s = (float)aged_us * 1.0e-6f;
         saddle_supervisor_gap(&context->supervisor, gap_s);
-        saddle_safe_state_gap(&context->safe_state, &context->config, gap_s);
+        saddle_safe_state_gap(&context->safe_state, &context->model, gap_s);
         return limit_us;
     }
     return aged_us;
@@ -78,7 +78,7 @@ static uint32_t take_command(saddle_context_t *context, const saddle_input_t *in
     } else {
         faults |= (uint32_t)SADDLE_FAULT_COMMAND;
     }
-    if ((float)context->command_age_us > context->config.command_max_age_s * 1.0e6f) {
+    if ((float)context->command_age_us > context->model.body.command_max_age_us) {
         faults |= (uint32_t)SADDLE_FAULT_COMMAND_STALE;
     }
     return faults;
@@ -128,11 +128,9 @@ static void plan_walk(saddle_context_t *context, const saddle_input_t *input, ui
     static const saddle_command_t stand = {(uint8_t)SADDLE_COMMAND_STAND, 0.0f, 0.0f};
     const saddle_feet_t feet = measured_feet(&input->measurement, faults);
     output->limits |= stop ? (uint32_t)SADDLE_LIMIT_SAFE_STOP : 0u;
-    output->limits |=
-        saddle_planner_update(&context->planner, &context->config, &context->body,
-                              stop ? &stand : &context->command, &feet, dt_us);
-    output->limits |= saddle_planner_write(&context->planner, &context->config, &context->body,
-                                           &output->plan);
+    output->limits |= saddle_planner_update(&context->planner, &context->model,
+                                            stop ? &stand : &context->command, &feet, dt_us);
+    output->limits |= saddle_planner_write(&context->planner, &context->model, &output->plan);
 }
 
 /* The measured posture against the plan. */
@@ -140,9 +138,9 @@ static void supervise(saddle_context_t *context, const saddle_input_t *input, ui
                       float dt_s, saddle_output_t *output)
 {
     const saddle_intent_t intent = intent_of(&output->plan);
-    output->faults |= saddle_supervisor_update(
-        &context->supervisor, &context->config, &context->body, &input->measurement, faults, dt_s,
-        &intent, &output->scores, &output->verdict);
+    output->faults |=
+        saddle_supervisor_update(&context->supervisor, &context->model, &input->measurement, faults,
+                                 dt_s, &intent, &output->scores, &output->verdict);
 }
 
 saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
@@ -162,10 +160,10 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     const uint32_t dt_us = elapsed_us(context, input->time_us, &output->limits);
     const float dt_s = (float)dt_us * 1.0e-6f;
     const uint32_t faults =
-        saddle_judge(&context->supervisor.watch, &context->config, &input->measurement,
+        saddle_judge(&context->supervisor.watch, &context->model, &input->measurement,
                      saddle_planner_speed_m_s(&context->planner), dt_s);
     output->faults = take_command(context, input);
-    const bool stop = saddle_safe_state_update(&context->safe_state, &context->config,
+    const bool stop = saddle_safe_state_update(&context->safe_state, &context->model,
                                                faults | output->faults, dt_s);
     plan_walk(context, input, faults, stop, dt_us, output);
     supervise(context, input, faults, dt_s, output);
@@ -185,7 +183,7 @@ saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *c
         return SADDLE_ERROR_COMMAND;
     }
     context->command = *command;
-    saddle_planner_join(&context->planner, &context->config, &context->body, command);
+    saddle_planner_join(&context->planner, &context->model, command);
     return SADDLE_OK;
 }
 
@@ -194,10 +192,10 @@ static void advance_far(saddle_planner_t *planner, const saddle_context_t *conte
 {
     uint32_t rest_us = dt_us;
     while (rest_us > TICK_LIMIT_US) {
-        saddle_planner_advance(planner, &context->config, &context->body, TICK_LIMIT_US);
+        saddle_planner_advance(planner, &context->model, TICK_LIMIT_US);
         rest_us -= TICK_LIMIT_US;
     }
-    saddle_planner_advance(planner, &context->config, &context->body, rest_us);
+    saddle_planner_advance(planner, &context->model, rest_us);
 }
 
 saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
@@ -220,7 +218,7 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
     saddle_planner_t planner;
     saddle_copy(&planner, &context->planner, sizeof planner);
     advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
-    saddle_planner_write(&planner, &context->config, &context->body, plan);
+    saddle_planner_write(&planner, &context->model, plan);
     return SADDLE_OK;
 }
 
@@ -249,6 +247,6 @@ saddle_status_t saddle_score_plan(const saddle_context_t *context, const saddle_
     posture.v_comp_m_s = plan->speed_m_s;
     posture.half_step_m = 0.5f * plan->step_length_m;
     posture.known = plan->valid ? (uint32_t)SADDLE_KNOWN_ALL : 0u;
-    saddle_score_posture(&context->config, &context->body, &posture, scores);
+    saddle_score_posture(&context->model, &posture, scores);
     return SADDLE_OK;
 }

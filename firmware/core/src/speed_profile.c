@@ -59,8 +59,7 @@ saddle_pace_t saddle_pace(const saddle_speed_profile_t *profile)
 
 static float speed_on_the_way_m_s(const saddle_pace_t *pace, float way_m)
 {
-    const float square =
-        pace->speed_m_s * pace->speed_m_s + 2.0f * pace->acceleration_m_s2 * way_m;
+    const float square = pace->speed_m_s * pace->speed_m_s + 2.0f * pace->acceleration_m_s2 * way_m;
     return square > 0.0f ? sqrtf(square) : 0.0f;
 }
 

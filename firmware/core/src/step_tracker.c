@@ -74,21 +74,21 @@ static bool stands_still(const saddle_measurement_t *measurement)
 }
 
 /* Who has not stepped for so long does not walk any more. */
-static void age_step(saddle_step_tracker_t *tracker, const saddle_config_t *config, float dt_s)
+static void age_step(saddle_step_tracker_t *tracker, const saddle_model_t *model, float dt_s)
 {
     tracker->since_strike_s += dt_s;
-    if (tracker->since_strike_s > config->step_time_max_s) {
-        tracker->since_strike_s = config->step_time_max_s;
+    if (tracker->since_strike_s > model->config.step_time_max_s) {
+        tracker->since_strike_s = model->config.step_time_max_s;
         tracker->step_open = false;
         tracker->v_comp_known = false;
         tracker->half_step_known = false;
     }
 }
 
-void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_config_t *config,
+void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_model_t *model,
                         const saddle_measurement_t *measurement, uint32_t faults, float dt_s)
 {
-    age_step(tracker, config, dt_s);
+    age_step(tracker, model, dt_s);
     const bool com_known = (faults & SADDLE_FAULTS_COM) == 0u;
     const bool left_known = (faults & SADDLE_FAULTS_LEFT) == 0u;
     const bool right_known = (faults & SADDLE_FAULTS_RIGHT) == 0u;

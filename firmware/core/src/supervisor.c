@@ -6,20 +6,18 @@ void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s)
     saddle_level_reset(&supervisor->level);
 }
 
-uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_config_t *config,
-                                  const saddle_body_t *body,
+uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_model_t *model,
                                   const saddle_measurement_t *measurement, uint32_t faults,
                                   float dt_s, const saddle_intent_t *intent,
                                   saddle_scores_t *scores, saddle_verdict_t *verdict)
 {
     saddle_step_tracker_t *steps = &supervisor->steps;
-    saddle_track_steps(steps, config, measurement, faults, dt_s);
+    saddle_track_steps(steps, model, measurement, faults, dt_s);
     const bool feet_known = (faults & SADDLE_FAULTS_FEET) == 0u;
     const bool com_known = (faults & SADDLE_FAULTS_COM) == 0u;
     const bool is_to_stand = intent->leads && !intent->walking;
     const bool speed_known = !is_to_stand && (steps->v_comp_known || intent->step.speed_m_s > 0.0f);
-    const bool half_step_known =
-        !is_to_stand && feet_known && com_known && steps->half_step_known;
+    const bool half_step_known = !is_to_stand && feet_known && com_known && steps->half_step_known;
     saddle_posture_t posture;
     posture.com_m.x = 0.0f;
     posture.com_m.y = 0.0f;
@@ -32,13 +30,13 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
                     (com_known ? (uint32_t)SADDLE_KNOWN_VELOCITY : 0u) |
                     (speed_known ? (uint32_t)SADDLE_KNOWN_SPEED : 0u) |
                     (half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u);
-    saddle_score_posture(config, body, &posture, scores);
+    saddle_score_posture(model, &posture, scores);
     const uint32_t all_faults = faults | saddle_score_faults(posture.known, scores);
     saddle_compare_nothing(verdict);
     if (com_known && feet_known && scores->bos.defined) {
         const saddle_wearer_t wearer = {steps, measurement, &posture, scores};
-        saddle_compare(config, body, &wearer, intent, verdict);
+        saddle_compare(model, &wearer, intent, verdict);
     }
-    saddle_level_update(&supervisor->level, config, all_faults, scores, verdict);
+    saddle_level_update(&supervisor->level, model, all_faults, scores, verdict);
     return all_faults;
 }

@@ -116,9 +116,9 @@ def _not_told(walks: "list[WalkMeasures]") -> list[str]:
 
 
 def _too_fast(walks: "list[WalkMeasures]", config: Any) -> list[str]:
-    from saddlewalk.core import library
+    from saddlewalk.core import body_of
 
-    ceiling_m_s = library().saddle_body(config).speed_ceiling_m_s
+    ceiling_m_s = body_of(config).speed_ceiling_m_s
     return [
         f"{walk.source}: {walk.speed_m_s:.3g} m/s is above the fitted gait's ceiling, "
         f"{ceiling_m_s:.3g} m/s: a plan at it is limited"

@@ -45,7 +45,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk.core import Command, library
+    from saddlewalk.core import Command, body_of
     from saddlewalk.recorded_states import SCORE_COLUMNS, recording_core, scored_rows
 
     config = load_config(args)
@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     command = Command(args.speed)
     if args.speed is not None:
         core.join(command)
-        ceiling_m_s = library().saddle_body(config).speed_ceiling_m_s
+        ceiling_m_s = body_of(config).speed_ceiling_m_s
         if args.speed >= ceiling_m_s:
             note = f"is not feasible for this body: limited below {ceiling_m_s:.4g} m/s"
             print(f"saddlewalk supervise: --speed {args.speed:g} {note}", file=sys.stderr)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from saddlewalk.core import ffi, library
+from saddlewalk.core import body_of, ffi, library, model_of
 from saddlewalk.emulation.wearer import Body
 from saddlewalk.evaluation.baselines import hull_corners_m
 
@@ -154,16 +154,13 @@ def _nearest_on(standing: np.ndarray, point: np.ndarray) -> np.ndarray:
 
 
 def _work_max_j(config: Any) -> float:
-    body = ffi().new("saddle_body_t *")
-    body[0] = library().saddle_body(config)
-    return library().saddle_ankle_work_j(config, body)
+    return body_of(config).ankle_work_j
 
 
 def _claims(posture: Posture, states: np.ndarray, config: Any) -> dict[str, np.ndarray]:
     core = library()
-    body, seen = ffi().new("saddle_body_t *"), ffi().new("saddle_posture_t *")
+    model, seen = model_of(config), ffi().new("saddle_posture_t *")
     scores = ffi().new("saddle_scores_t *")
-    body[0] = core.saddle_body(config)
     seen.known = core.SADDLE_KNOWN_FEET | core.SADDLE_KNOWN_VELOCITY
     for cop, (x_m, y_m) in zip(seen.cop_m, posture.cop_m, strict=True):
         cop.x, cop.y = x_m, y_m
@@ -171,7 +168,7 @@ def _claims(posture: Posture, states: np.ndarray, config: Any) -> dict[str, np.n
     for index, (x_m, y_m, vx_m_s, vy_m_s) in enumerate(states.tolist()):
         seen.com_m.x, seen.com_m.y = x_m, y_m
         seen.com_velocity_m_s.x, seen.com_velocity_m_s.y = vx_m_s, vy_m_s
-        core.saddle_score_posture(config, body, seen, scores)
+        core.saddle_score_posture(model, seen, scores)
         said["bos"][index] = scores.mos_com_m >= 0
         said["can_stop"][index] = scores.can_stop
         said["stays"][index] = scores.can_stop and scores.mos_xcom_m >= config.stop_margin_m

@@ -108,7 +108,7 @@ def run(
     asked = Asked(float(random.uniform(*scenario.speed_m_s)))
     wearer = Wearer(Body.of(config), seed=int(random.integers(2**32)))
     device, sender = Device(config), wire.Sender()
-    judge = Judge(config, core.library().saddle_body(config), happening.begin_s)
+    judge = Judge(config, core.body_of(config), happening.begin_s)
     told = []
     for tick in range(round(scenario.duration_s / TICK_S)):
         walk_s = tick * TICK_S

@@ -181,7 +181,7 @@ def run_live(scenario: Scenario, index: int, number: int, seed: int, config: Any
     frames, commands = (Line([happening], random) for _ in range(2))
     wearer = Wearer(Body.of(config), seed=int(random.integers(2**32)))
     speed_m_s = float(random.uniform(*scenario.speed_m_s))
-    judge = Judge(config, core.library().saddle_body(config), math.inf)
+    judge = Judge(config, core.body_of(config), math.inf)
     spec = private_udp()
     url = f"udpm://239.255.76.67:{spec.rpartition(':')[2]}?ttl=0"
     options = (f"--can={spec}", f"--lcm={url}", *host_arguments(config))

@@ -158,9 +158,10 @@ def _width_fields(
 
 def _offset_width(samples: _Samples, paper: Any) -> dict[str, float]:
     """The paper's shape, shifted as a whole; its slope ends where it would become too narrow."""
-    from saddlewalk.core import library
+    from saddlewalk.core import library, model_of
 
-    printed_m = [library().saddle_step_width_m(paper, v) for v in samples.speed_m_s]
+    model = model_of(paper)
+    printed_m = [library().saddle_step_width_m(model, v) for v in samples.speed_m_s]
     offset_m = float(np.mean(samples.value - printed_m))
     line = _Line(paper.step_width_slope_s, paper.step_width_intercept_m + offset_m)
     slow_m_s, fast_m_s = paper.step_width_slow_speed_m_s, paper.step_width_fast_speed_m_s
@@ -193,12 +194,13 @@ def _half_foot(walks: Sequence[WalkMeasures]) -> Fit:
 
 def _lateral(walks: Sequence[WalkMeasures], config: Any) -> Fit:
     """The factor that brings the printed amplitude, at the fitted width, to the recorded, [E7]."""
-    from saddlewalk.core import library
+    from saddlewalk.core import library, model_of
 
     samples = _samples(walks, [walk.lateral_m for walk in walks])
     if len(samples.value) < FEWEST_STEPS:
         return _too_few(walks, "lateral amplitude", samples)
-    width_m = np.array([library().saddle_step_width_m(config, v) for v in samples.speed_m_s])
+    model = model_of(config)
+    width_m = np.array([library().saddle_step_width_m(model, v) for v in samples.speed_m_s])
     printed_m = width_m / (2 * np.pi * samples.speed_m_s)
     tangent_m = width_m / np.pi
     wanted_m = np.minimum(samples.value, tangent_m)

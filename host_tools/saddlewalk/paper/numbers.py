@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from saddlewalk.config import DEFAULT_HEIGHT_M
-from saddlewalk.core import library
+from saddlewalk.core import body_of
 from saddlewalk.paper.simulations import (
     FIGURE_HEEL_STRIKE_DEG,
     HEEL_STRIKES_DEG,
@@ -123,7 +123,7 @@ def _parameters(simulations: Simulations) -> Iterator[Number]:
 
 
 def _limits() -> Iterator[Number]:
-    body = library().saddle_body(mean_body())
+    body = body_of(mean_body())
     for what, paper, ours, unit, source in (
         ("pendulum length", "1.0203", body.pendulum_m, "m", "eq:06"),
         ("natural frequency", "3.1002", body.natural_frequency_rad_s, "rad/s", "eq:09"),
@@ -207,7 +207,7 @@ def _within_limits(simulations: Simulations) -> Finding:
 
 def _faster_than_the_pendulum(simulations: Simulations) -> Finding:
     cadence_hz = [1 / simulations.at(v).step_s for v in SPEEDS_M_S]
-    natural_hz = library().saddle_body(mean_body()).natural_frequency_rad_s / (2 * math.pi)
+    natural_hz = body_of(mean_body()).natural_frequency_rad_s / (2 * math.pi)
     return Finding(
         "The cadence is greater than the pendulum's natural frequency",
         f"{_list(cadence_hz, 'Hz', 2)}; pendulum {natural_hz:.2f} Hz",

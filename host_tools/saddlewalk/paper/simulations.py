@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from saddlewalk.config import ANKLES, DEFAULT_HEIGHT_M, DEFAULT_MASS_KG
-from saddlewalk.core import Core, ffi, library
+from saddlewalk.core import Core, ffi, library, model_of
 from saddlewalk.planning.steady import COLUMNS, row_of, walk
 
 SPEEDS_M_S = (0.7, 1.0, 1.2, 1.6)
@@ -45,13 +45,12 @@ class Gait:
 
 
 def gait(speed_m_s: float) -> Gait:
-    config, core = mean_body(), library()
-    body = ffi().new("saddle_body_t *", core.saddle_body(config))
-    bounds = core.saddle_step_bounds(config, body, speed_m_s)
-    width_m = core.saddle_step_width_m(config, speed_m_s)
+    model, core = model_of(mean_body()), library()
+    bounds = core.saddle_step_bounds(model, speed_m_s)
+    width_m = core.saddle_step_width_m(model, speed_m_s)
     quarter = ffi().new(
         "saddle_quarter_t *",
-        core.saddle_quarter(config, core.SADDLE_LEFT, bounds.reference_m, width_m, speed_m_s),
+        core.saddle_quarter(model, core.SADDLE_LEFT, bounds.reference_m, width_m, speed_m_s),
     )
     return Gait(
         half_step_m=bounds.reference_m,

@@ -2,11 +2,11 @@
 #ifndef SADDLEWALK_COMPARISON_H
 #define SADDLEWALK_COMPARISON_H
 
-#include <saddlewalk/config.h>
 #include <saddlewalk/energy.h>
 #include <saddlewalk/expected_step.h>
 #include <saddlewalk/gait_model.h>
 #include <saddlewalk/measurement.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/scores.h>
 #include <saddlewalk/step_tracker.h>
 #include <saddlewalk/verdict.h>
@@ -35,7 +35,7 @@ void saddle_compare_nothing(saddle_verdict_t *verdict);
 /** Compare with what is planned; without a command, with the walk of the last step or standing. Feet
  *  and CoM are known and the BoS is defined. Writes to a cleared verdict all but level and reason,
  *  nothing if there is no walk to compare with. */
-void saddle_compare(const saddle_config_t *config, const saddle_body_t *body,
+void saddle_compare(const saddle_model_t *model,
                     const saddle_wearer_t *wearer, const saddle_intent_t *intent,
                     saddle_verdict_t *verdict);
 

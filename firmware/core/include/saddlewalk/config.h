@@ -86,6 +86,12 @@ const char *saddle_config_check(const saddle_config_t *config);
 /** Of the symmetric step, the longer one of the two feet; at least 1. */
 float saddle_longer_step_factor(const saddle_config_t *config);
 
+/** [E4] Half a symmetric step. */
+float saddle_regressed_half_step_m(const saddle_config_t *config, float speed_m_s);
+
+/** [E3] Step width between the two speeds. */
+float saddle_regressed_width_m(const saddle_config_t *config, float speed_m_s);
+
 /** The float field at an index, NULL past the last. For hosts that set fields by name. */
 const saddle_config_field_t *saddle_config_field(size_t index);
 

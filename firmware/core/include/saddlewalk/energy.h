@@ -2,8 +2,8 @@
 #ifndef SADDLEWALK_ENERGY_H
 #define SADDLEWALK_ENERGY_H
 
-#include <saddlewalk/config.h>
 #include <saddlewalk/gait_model.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/saddle_space.h>
 #include <saddlewalk/saddle_types.h>
 #include <stdbool.h>
@@ -15,17 +15,14 @@ typedef struct {
 
 /** [E26] Energy beyond what leaves the CoM at rest on the border of the BoS. bos: of cop_m, in the
  *  frame of state. False, and 0, where no leg reaches. */
-bool saddle_excess_stop_j(const saddle_config_t *config, const saddle_body_t *body,
+bool saddle_excess_stop_j(const saddle_model_t *model,
                           const saddle_vec2_t cop_m[2], const saddle_bos_t *bos,
                           const saddle_com_state_t *state, float *excess_j);
 
 /** [E26] Energy beyond what the planned state has on the border of the BoS. */
-bool saddle_excess_track_j(const saddle_config_t *config, const saddle_body_t *body,
+bool saddle_excess_track_j(const saddle_model_t *model,
                            const saddle_vec2_t cop_m[2], const saddle_bos_t *bos,
                            const saddle_com_state_t *state, const saddle_com_state_t *planned,
                            float *excess_j);
-
-/** [E27] W_max: what moving the CoP within the feet can absorb. */
-float saddle_ankle_work_j(const saddle_config_t *config, const saddle_body_t *body);
 
 #endif

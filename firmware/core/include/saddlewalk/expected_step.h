@@ -3,9 +3,9 @@
 #ifndef SADDLEWALK_EXPECTED_STEP_H
 #define SADDLEWALK_EXPECTED_STEP_H
 
-#include <saddlewalk/config.h>
 #include <saddlewalk/energy.h>
 #include <saddlewalk/gait_model.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/saddle_types.h>
 #include <stdbool.h>
 
@@ -28,7 +28,7 @@ typedef struct {
 } saddle_expectation_t;
 
 /** [E28] The step at the phase of a CoM that is x_m from the stance CoP. */
-saddle_expectation_t saddle_expect(const saddle_config_t *config, const saddle_step_t *step,
+saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
                                    float x_m);
 
 /** How a deviation of the XCoM grows in a time, [E29] [E30]. */
@@ -39,7 +39,7 @@ typedef struct {
 } saddle_growth_t;
 
 /** [E29] trailing: the other foot still carries, for about 0.1 s more. */
-saddle_growth_t saddle_growth(const saddle_body_t *body, float time_s, bool trailing);
+saddle_growth_t saddle_growth(const saddle_model_t *model, float time_s, bool trailing);
 
 /** [E29] What a deviation of the CoM along one axis, with that of the XCoM, has grown to after free
  *  fall about the CoP; the XCoM's own grows by growth->factor. */

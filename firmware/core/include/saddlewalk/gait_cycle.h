@@ -7,6 +7,7 @@
 #include <saddlewalk/blend.h>
 #include <saddlewalk/foot_swing.h>
 #include <saddlewalk/gait_model.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/saddle_fixed.h>
 #include <saddlewalk/speed_profile.h>
 #include <stdbool.h>
@@ -51,23 +52,30 @@ typedef struct {
     saddle_vec2_t other_m;    /**< the other foot, from the stance CoP */
     float com_y_m, com_z_m;   /**< from the stance CoP; z from the ground */
     saddle_fixed_t speed;
+    float heel_strike_rad;    /**< of the first landing */
     bool under_way;           /**< the other foot is in mid-swing: a steady walk is joined */
 } saddle_cycle_start_t;
 
-/** Set up everything but the profile's target and rate and the heel-strike angles. */
-void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_config_t *config,
-                        const saddle_body_t *body, const saddle_cycle_start_t *start);
+/** Stand, no step under way, with the stance foot at stance_y_m from the walking line. */
+void saddle_cycle_stand(saddle_cycle_t *cycle, saddle_side_t stance, float stance_y_m);
+
+/** Begin to walk. Counts and distance go on; the pace is as it was. */
+void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model, const saddle_cycle_start_t *start);
+
+/** From now on towards a speed at a rate. */
+void saddle_cycle_set_pace(saddle_cycle_t *cycle, float speed_m_s, float rate_m_s2);
+
+/** Whether the swing under way, or before a landing the next one, ends beside the stance foot. */
+void saddle_cycle_set_last_swing(saddle_cycle_t *cycle, bool last_swing);
 
 /** Walk on for dt_us. Returns the microseconds left when a last swing ended with zero speed beside
  *  the stance foot; 0 while it walks on. At most eight via points are passed. */
-uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_config_t *config,
-                              const saddle_body_t *body, float heel_strike_rad, uint32_t dt_us,
+uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model, float heel_strike_rad, uint32_t dt_us,
                               bool *arrived);
 
 /** Take over a landing: the step that the stance foot really made. False, and nothing changes, if
  *  it is too late in the step or the foot lies where no plan can go on from. */
-bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_config_t *config,
-                       const saddle_body_t *body, saddle_vec2_t step_m);
+bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m);
 
 /** Whether the running quarter leads to a saddle via point, where the swing foot lands. */
 bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);
@@ -78,7 +86,6 @@ float saddle_cycle_way_to_via_point_m(const saddle_cycle_t *cycle);
 /** The pose's com_m.y alone. */
 float saddle_cycle_com_y_m(const saddle_cycle_t *cycle);
 
-void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_config_t *config,
-                       const saddle_body_t *body, saddle_pose_t *pose);
+void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model, saddle_pose_t *pose);
 
 #endif

@@ -2,21 +2,10 @@
 #ifndef SADDLEWALK_GAIT_MODEL_H
 #define SADDLEWALK_GAIT_MODEL_H
 
-#include <saddlewalk/config.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/saddle_fixed.h>
 #include <saddlewalk/saddle_types.h>
 #include <stdbool.h>
-
-/** A feasible speed stays this factor under the ceiling when it is limited. */
-#define SADDLE_CEILING_MARGIN 0.99f
-
-/** Constants of one body, derived once from the configuration. */
-typedef struct {
-    float pendulum_m;            /**< l_p, [E1] */
-    float natural_frequency_rad_s; /**< w_n, [E2] */
-    float half_step_max_m;       /**< reach, [E6] */
-    float speed_ceiling_m_s;     /**< no speed at or above it is planned, [E6] */
-} saddle_body_t;
 
 /** One quarter of the stride: from beside the stance foot (foot via point) to midway between the
  *  feet (saddle via point), or back. */
@@ -36,28 +25,22 @@ typedef struct {
     bool feasible;     /**< speed > 0 and min < reference < max */
 } saddle_step_bounds_t;
 
-/** config has passed saddle_config_check(). */
-saddle_body_t saddle_body(const saddle_config_t *config);
-
 /** [E3], defined at every speed. */
-float saddle_step_width_m(const saddle_config_t *config, float speed_m_s);
+float saddle_step_width_m(const saddle_model_t *model, float speed_m_s);
 
 /** Any finite speed; for speed <= 0 not feasible. */
-saddle_step_bounds_t saddle_step_bounds(const saddle_config_t *config, const saddle_body_t *body,
+saddle_step_bounds_t saddle_step_bounds(const saddle_model_t *model,
                                         float speed_m_s);
 
 /** [E4] Half the step that a foot makes, exact in the speed; speed >= 0. */
-saddle_fixed_t saddle_half_step(const saddle_config_t *config, saddle_side_t foot,
+saddle_fixed_t saddle_half_step(const saddle_model_t *model, saddle_side_t foot,
                                 saddle_fixed_t speed);
 
 /** [E3] Where a foot lands beside the walking line: y, positive for the left foot. */
-float saddle_landing_y_m(const saddle_config_t *config, saddle_side_t foot, float speed_m_s);
+float saddle_landing_y_m(const saddle_model_t *model, saddle_side_t foot, float speed_m_s);
 
 /** Amplitudes at a speed for a quarter of the given shape; width_m below 2 cm counts as 2 cm. */
-saddle_quarter_t saddle_quarter(const saddle_config_t *config, saddle_side_t stance, float length_m,
+saddle_quarter_t saddle_quarter(const saddle_model_t *model, saddle_side_t stance, float length_m,
                                 float width_m, float speed_m_s);
-
-/** The other foot. */
-saddle_side_t saddle_other_side(saddle_side_t side);
 
 #endif

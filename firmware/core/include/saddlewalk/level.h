@@ -2,7 +2,7 @@
 #ifndef SADDLEWALK_LEVEL_H
 #define SADDLEWALK_LEVEL_H
 
-#include <saddlewalk/config.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/scores.h>
 #include <saddlewalk/verdict.h>
 #include <stdint.h>
@@ -17,7 +17,7 @@ typedef struct {
 
 /** Decide and announce. faults: of the inputs and of the scores. Reads what the comparison wrote to
  *  *verdict and writes its level and reason. */
-void saddle_level_update(saddle_level_state_t *state, const saddle_config_t *config,
+void saddle_level_update(saddle_level_state_t *state, const saddle_model_t *model,
                          uint32_t faults, const saddle_scores_t *scores,
                          saddle_verdict_t *verdict);
 

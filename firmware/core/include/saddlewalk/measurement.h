@@ -2,7 +2,7 @@
 #ifndef SADDLEWALK_MEASUREMENT_H
 #define SADDLEWALK_MEASUREMENT_H
 
-#include <saddlewalk/config.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/saddle_types.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -83,7 +83,7 @@ typedef struct {
 /** Judge a measurement: age, finite, humanly possible, alive, not contradictory. dt_s: since the
  *  last call; planned_m_s: speed of the walk that was planned then, 0 for none. Absurd: a CoM below the knees (0.285 of the body's height) or above the body's height,
  *  faster than 6 m/s along x or y; a CoP beyond 2.5 m along x or y. Returns saddle_fault_t bits. */
-uint32_t saddle_judge(saddle_watch_t *watch, const saddle_config_t *config,
+uint32_t saddle_judge(saddle_watch_t *watch, const saddle_model_t *model,
                       const saddle_measurement_t *measurement, float planned_m_s, float dt_s);
 
 #endif

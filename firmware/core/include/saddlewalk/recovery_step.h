@@ -2,9 +2,9 @@
 #ifndef SADDLEWALK_RECOVERY_STEP_H
 #define SADDLEWALK_RECOVERY_STEP_H
 
-#include <saddlewalk/config.h>
 #include <saddlewalk/expected_step.h>
 #include <saddlewalk/gait_model.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/saddle_types.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -18,17 +18,17 @@ typedef struct {
     float margin_m; /**< reach that is left on the scarcer axis; negative: what is lacking */
 } saddle_recovery_t;
 
-/** What a recovery step has to catch. */
+/** What a recovery step starts from. */
 typedef struct {
     saddle_side_t stance;
     saddle_vec2_t landing_m; /**< planned */
     saddle_vec2_t xcom_m;    /**< planned, when the foot lands */
     saddle_vec2_t departure_m; /**< of the expected XCoM from there */
     float step_time_s;       /**< of the steps after it */
-} saddle_catch_t;
+} saddle_recovery_target_t;
 
-void saddle_recovery_step(const saddle_config_t *config, const saddle_body_t *body,
-                          const saddle_catch_t *to_catch, saddle_recovery_t *recovery);
+void saddle_recovery_step(const saddle_model_t *model,
+                          const saddle_recovery_target_t *target, saddle_recovery_t *recovery);
 
 /** How far the wearer can move the CoP from where it is planned, along one axis. */
 typedef struct {

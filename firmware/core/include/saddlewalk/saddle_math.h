@@ -73,6 +73,18 @@ static inline float saddle_magnitude(float x)
     return x < 0.0f ? -x : x;
 }
 
+/** The larger of two; b if either is NaN. */
+static inline float saddle_larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+/** The smaller of two; b if either is NaN. */
+static inline float saddle_smaller(float a, float b)
+{
+    return a < b ? a : b;
+}
+
 /** x limited to [lo, hi], where lo <= hi; lo for NaN. */
 static inline float saddle_clamp(float x, float lo, float hi)
 {

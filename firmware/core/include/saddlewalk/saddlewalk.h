@@ -22,6 +22,7 @@ extern "C" {
 #include <saddlewalk/config.h>
 #include <saddlewalk/gait_model.h>
 #include <saddlewalk/measurement.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/planner.h>
 #include <saddlewalk/safe_state.h>
 #include <saddlewalk/saddle_space.h>
@@ -62,8 +63,7 @@ typedef struct {
 typedef struct {
     uint64_t last_time_us;
     uint32_t initialised;
-    saddle_config_t config;
-    saddle_body_t body;
+    saddle_model_t model;
     saddle_planner_t planner;
     saddle_supervisor_t supervisor;
     saddle_safe_state_t safe_state;

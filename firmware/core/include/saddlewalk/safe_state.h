@@ -2,7 +2,7 @@
 #ifndef SADDLEWALK_SAFE_STATE_H
 #define SADDLEWALK_SAFE_STATE_H
 
-#include <saddlewalk/config.h>
+#include <saddlewalk/model.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -18,11 +18,11 @@ typedef struct {
  *  command is stale, a measurement is stale or frozen, or measurements have been unusable in another
  *  way for com_max_age_s, until all have been good for resume_time_s. A plan that never was given any
  *  measurement (SADDLE_AGE_NEVER_US) does not need them; feet that are together are no loss. */
-bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_config_t *config,
+bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_model_t *model,
                               uint32_t faults, float dt_s);
 
 /** No tick for gap_s: a walk does not go on over one longer than step_time_max_s, after which nobody is
  *  known to walk. Call it before that tick's update. */
-void saddle_safe_state_gap(saddle_safe_state_t *state, const saddle_config_t *config, float gap_s);
+void saddle_safe_state_gap(saddle_safe_state_t *state, const saddle_model_t *model, float gap_s);
 
 #endif

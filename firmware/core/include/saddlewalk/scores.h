@@ -2,9 +2,9 @@
 #ifndef SADDLEWALK_SCORES_H
 #define SADDLEWALK_SCORES_H
 
-#include <saddlewalk/config.h>
 #include <saddlewalk/gait_model.h>
 #include <saddlewalk/measurement.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/saddle_space.h>
 #include <saddlewalk/saddle_types.h>
 #include <stdbool.h>
@@ -55,7 +55,7 @@ typedef struct {
 } saddle_posture_t;
 
 /** Score a posture. Whatever is not known is not scored. Writes all of *scores. */
-void saddle_score_posture(const saddle_config_t *config, const saddle_body_t *body,
+void saddle_score_posture(const saddle_model_t *model,
                           const saddle_posture_t *posture, saddle_scores_t *scores);
 
 /** Whether all of these saddle_valid_t results are there. */

@@ -3,6 +3,7 @@
 #define SADDLEWALK_STEP_TRACKER_H
 
 #include <saddlewalk/measurement.h>
+#include <saddlewalk/model.h>
 
 /** State, part of the context. */
 typedef struct {
@@ -23,7 +24,7 @@ typedef struct {
  *  did not step. What is older than step_time_max_s is forgotten, or older than a step that could not
  *  be measured. Standing is seen when both feet
  *  carry and the CoM is slower than 0.2 m/s. */
-void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_config_t *config,
+void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_model_t *model,
                         const saddle_measurement_t *measurement, uint32_t faults, float dt_s);
 
 /** What happened in the last gap_s is not known: the running step gives no speed. */

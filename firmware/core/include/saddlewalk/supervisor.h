@@ -7,6 +7,7 @@
 #include <saddlewalk/gait_model.h>
 #include <saddlewalk/level.h>
 #include <saddlewalk/measurement.h>
+#include <saddlewalk/model.h>
 #include <saddlewalk/scores.h>
 #include <saddlewalk/step_tracker.h>
 #include <saddlewalk/verdict.h>
@@ -25,8 +26,7 @@ void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s);
 /** Follow the steps, score the posture in the frame of the CoM and give the verdict. While a plan has
  *  both feet stand there is no walk to score: v_comp_m_s, the step scores and s_sw are not valid.
  *  faults: what saddle_judge() said. Returns the faults and those of the scores. */
-uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_config_t *config,
-                                  const saddle_body_t *body,
+uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_model_t *model,
                                   const saddle_measurement_t *measurement, uint32_t faults,
                                   float dt_s, const saddle_intent_t *intent,
                                   saddle_scores_t *scores, saddle_verdict_t *verdict);
