@@ -88,6 +88,11 @@ def add_recordings(parser: argparse.ArgumentParser) -> None:
         metavar="RECORDING",
         help="a steady walk: .c3d, .trc, or CSV with t, com_x ... rtoe_z in s and m",
     )
+    add_markers(parser)
+
+
+def add_markers(parser: argparse.ArgumentParser) -> None:
+    """--markers, for read_markers()."""
     add_input(
         parser,
         "--markers",

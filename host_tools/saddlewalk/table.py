@@ -43,11 +43,20 @@ def read_table(source: str, columns: Sequence[str]) -> Iterator[tuple[int, dict[
     An empty cell is NaN. Further columns are ignored. Raises UserError naming the file, the line,
     the column and the text that is not a number.
     """
+    return _read_rows(source, [columns])
+
+
+def _read_rows(
+    source: str, layouts: Sequence[Sequence[str]]
+) -> Iterator[tuple[int, dict[str, float]]]:
+    """The columns of the first layout that the header has, or else of the one it nearly has."""
     name = _name(source)
     try:
         with _open(source) as file:
             reader = csv.DictReader(file, strict=True)
-            _check_header(name, reader.fieldnames or (), columns)
+            header = reader.fieldnames or ()
+            columns = min(layouts, key=lambda names: len(set(names) - set(header)))
+            _check_header(name, header, columns)
             for row in reader:
                 yield reader.line_num, _numbers(name, reader.line_num, row, columns)
     except OSError as error:
@@ -60,10 +69,17 @@ def read_series(
     source: str, columns: Sequence[str], longest_s: float
 ) -> Iterator[tuple[int, dict[str, float]]]:
     """A read_table() whose first column is a time in seconds that increases, by up to longest_s."""
+    return read_any_series(source, [columns], longest_s)
+
+
+def read_any_series(
+    source: str, layouts: Sequence[Sequence[str]], longest_s: float
+) -> Iterator[tuple[int, dict[str, float]]]:
+    """A read_series() of the first of several layouts that the file has."""
     start_s = last_s = None
-    for line, numbers in read_table(source, columns):
-        now_s = numbers[columns[0]]
-        where = f"{_name(source)}: line {line}, {columns[0]}: {now_s:.9g}"
+    for line, numbers in _read_rows(source, layouts):
+        time, now_s = next(iter(numbers.items()))
+        where = f"{_name(source)}: line {line}, {time}: {now_s:.9g}"
         if not math.isfinite(now_s):
             raise UserError(f"{where} must be a finite time in seconds")
         if last_s is not None and now_s - last_s < RESOLUTION_S:

@@ -20,8 +20,14 @@ from saddlewalk.core import Command, Core, Measurement, ffi, library
 from saddlewalk.errors import UserError
 from saddlewalk.gait import playback
 from saddlewalk.gait.events import analyse
-from saddlewalk.gait.playback import measurements, play_lockstep, play_realtime
+from saddlewalk.gait.playback import (
+    measurements,
+    play_lockstep,
+    play_realtime,
+    states_at_ticks,
+)
 from saddlewalk.paths import CHECKOUT
+from saddlewalk.recorded_states import STATE_COLUMNS
 from saddlewalk.table import format_cell
 from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages
 from saddlewalk.transport.bus import open_bus, private_udp
@@ -166,7 +172,7 @@ def judgement(verdict) -> Messages:
 
 def sets_of(walk: Walk) -> list[tuple[float, Messages]]:
     recording = walk.recording()
-    return list(measurements(recording, analyse(recording).contact))
+    return list(measurements(states_at_ticks(recording, analyse(recording).contact)))
 
 
 def same(a: list[tuple], b: list[tuple]) -> bool:
@@ -185,7 +191,7 @@ def test_a_set_is_what_the_recording_holds_at_that_time():
     walk = Walk(duration_s=1.0)
     recording = walk.recording()
     contact = walk.contact()
-    sets = list(measurements(recording, contact))
+    sets = list(measurements(states_at_ticks(recording, contact)))
     assert [t for t, _ in sets] == pytest.approx(np.arange(13) * 0.08)
     for time_s, messages in sets:
         i = round(time_s * walk.rate_hz)
@@ -202,7 +208,9 @@ def test_time_counts_from_the_first_sample():
     recording = Walk(duration_s=1.0).recording()
     later = dataclasses.replace(recording, time_s=recording.time_s + 1e4)
     contact = Walk(duration_s=1.0).contact()
-    sent, sent_later = list(measurements(recording, contact)), list(measurements(later, contact))
+    sent, sent_later = (
+        list(measurements(states_at_ticks(trial, contact))) for trial in (recording, later)
+    )
     assert [t for t, _ in sent] == [t for t, _ in sent_later]
     assert sent[5][1]["MEASURED_LEFT"] == sent_later[5][1]["MEASURED_LEFT"]
 
@@ -218,7 +226,7 @@ def test_a_gap_in_the_recording_is_sent_as_not_available():
         toe_m=recording.toe_m[:, kept],
     )
     holed.toe_m[1, -1] = np.nan
-    sets = dict(measurements(holed, np.ones((2, len(kept)), dtype=bool)))
+    sets = dict(measurements(states_at_ticks(holed, np.ones((2, len(kept)), dtype=bool))))
     missing = {
         round(t, 2)
         for t, messages in sets.items()
@@ -277,7 +285,8 @@ def test_the_host_answers_as_the_core_fed_offline_with_the_same_frames(capsys, t
 
     read = load_recording(str(trial))
     gait = analyse(read)
-    offline = play_lockstep(OfflineFirmware(), measurements(read, gait.contact))
+    states = list(states_at_ticks(read, gait.contact))
+    offline = play_lockstep(OfflineFirmware(), measurements(states))
     rows = [score_row(*tick) for tick in offline]
     assert printed == told("\n".join(report(read, gait, rows)))
     assert int(printed["ticks"]) == 51
@@ -285,9 +294,10 @@ def test_the_host_answers_as_the_core_fed_offline_with_the_same_frames(capsys, t
     assert float(printed["speed"]) == pytest.approx(1.2, rel=0.01)
     with out.open() as file:
         written = list(csv.DictReader(file))
-    assert list(written[0]) == SCORE_COLUMNS
-    for line, row in zip(written, rows, strict=True):
-        assert list(line.values()) == [format_cell(cell) for cell in row]
+    assert list(written[0]) == [*SCORE_COLUMNS, *STATE_COLUMNS[1:]]
+    for line, row, state in zip(written, rows, states, strict=True):
+        cells = [*row, *(state[name] for name in STATE_COLUMNS[1:])]
+        assert list(line.values()) == [format_cell(cell) for cell in cells]
     levels = [line["level"] for line in written]
     assert levels[12] == "unknown" and written[12]["reason"] == "input"
     assert written[12]["can_stop"] == written[12]["on_track"] == ""

@@ -3,7 +3,6 @@
 import argparse
 import math
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.errors import UserError
@@ -55,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.gait.motion_capture import load_walk, read_markers
     from saddlewalk.gait.person_file import header_text, toml_text
 
-    markers = read_markers(Path(args.markers)) if args.markers else {}
+    markers = read_markers(args.markers)
     for source in args.recordings:
         if args.recordings.count(source) > 1:
             raise UserError(f"{source} is given twice: its steps would count twice")

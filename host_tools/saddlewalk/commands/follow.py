@@ -3,7 +3,6 @@
 import argparse
 import math
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import ANKLES, add_body_options, load_config
@@ -52,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.gait.motion_capture import load_walk, read_markers
     from saddlewalk.table import write_table
 
-    markers = read_markers(Path(args.markers)) if args.markers else {}
+    markers = read_markers(args.markers)
     defaults = load_config(argparse.Namespace(**{**vars(args), "config": None}))
     rows = []
     for source in args.recordings:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk import verdict
 from saddlewalk.config import add_body_options
+from saddlewalk.options import add_markers
 from saddlewalk.outputs import add_input, add_output
 
 if TYPE_CHECKING:
@@ -25,8 +26,15 @@ def add_parser(subparsers: Any) -> None:
         "replay", help="send a recorded walk through CAN to the firmware"
     )
     trial = parser.add_mutually_exclusive_group(required=True)
-    add_input(trial, "trial", nargs="?", metavar="TRIAL.csv", help="- reads standard input")
+    add_input(
+        trial,
+        "recording",
+        nargs="?",
+        metavar="RECORDING",
+        help=".c3d, .trc, or CSV with t, com_x ... rtoe_z in s and m; - reads CSV from stdin",
+    )
     trial.add_argument("--sample", choices=SAMPLE_NAMES, help="a recorded person of gaitkit's data")
+    add_markers(parser)
     parser.add_argument(
         "--can",
         metavar="SPEC",
@@ -39,7 +47,7 @@ def add_parser(subparsers: Any) -> None:
         help="as fast as the firmware answers, or as it was walked, with LCM (default lockstep)",
     )
     add_body_options(parser)
-    add_output(parser, "--out", metavar="FILE", help="scores of every tick as CSV")
+    add_output(parser, "--out", metavar="FILE", help="states and scores of every tick as CSV")
     parser.set_defaults(run=run)
 
 
@@ -47,13 +55,22 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.config import host_arguments, load_config
     from saddlewalk.emulation.host import running_host
     from saddlewalk.gait.events import analyse
-    from saddlewalk.gait.playback import measurements, play_lockstep, play_realtime
+    from saddlewalk.gait.measures import implausible
+    from saddlewalk.gait.playback import (
+        measurements,
+        play_lockstep,
+        play_realtime,
+        states_at_ticks,
+    )
+    from saddlewalk.recorded_states import STATE_COLUMNS
     from saddlewalk.table import write_table
     from saddlewalk.transport.bus import open_bus, private_udp
 
     recording = _load(args)
     gait = analyse(recording)
-    _warn(recording, gait)
+    for line in implausible(recording, gait):
+        print(f"saddlewalk replay: {line}", file=sys.stderr)
+    states = {state["t_s"]: state for state in states_at_ticks(recording, gait.contact)}
     options = host_arguments(load_config(args))
     spec = args.can or private_udp()
     lcm = ["--lcm=none"] if args.clock == "lockstep" else []
@@ -62,9 +79,18 @@ def run(args: argparse.Namespace) -> int:
         open_bus(spec) as bus,
         running_host(f"--can={spec}", f"--clock={args.clock}", *lcm, *options),
     ):
-        rows = [score_row(*tick) for tick in play(bus, measurements(recording, gait.contact))]
+        answers = list(play(bus, measurements(states.values())))
+    rows = [score_row(*answer) for answer in answers]
     if args.out:
-        write_table(args.out, SCORE_COLUMNS, rows)
+        measured = STATE_COLUMNS[1:]
+        write_table(
+            args.out,
+            [*SCORE_COLUMNS, *measured],
+            (
+                [*row, *(states[time_s][name] for name in measured)]
+                for row, (time_s, _) in zip(rows, answers, strict=True)
+            ),
+        )
     told = sys.stderr if args.out == "-" else sys.stdout
     print("\n".join(report(recording, gait, rows)), file=told)
     return 0
@@ -75,27 +101,9 @@ def _load(args: argparse.Namespace) -> "Recording":
         from saddlewalk.gait.samples import load_sample
 
         return load_sample(args.sample)
-    from saddlewalk.gait.recording import load_recording
+    from saddlewalk.gait.motion_capture import load_walk, read_markers
 
-    return load_recording(args.trial)
-
-
-def _warn(recording: "Recording", gait: "Gait") -> None:
-    """A line for what no human walk has: the firmware takes any, and this is most often a unit."""
-    from saddlewalk.gait.measures import inhuman
-
-    for quantity, value in (
-        ("walking speed", gait.speed_m_s),
-        ("step length", gait.step_length_m),
-        ("step width", gait.step_width_m),
-    ):
-        told = None if math.isnan(value) else inhuman(quantity, value)
-        if told:
-            print(
-                f"saddlewalk replay: {recording.source}: {told}; t in s, markers in m, "
-                "x forward, y to the left?",
-                file=sys.stderr,
-            )
+    return load_walk(args.recording, read_markers(args.markers))
 
 
 def score_row(time_s: float, scores: dict[str, float]) -> list:

@@ -2,25 +2,19 @@
 
 import argparse
 import sys
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from saddlewalk.config import add_body_options, load_config
-from saddlewalk.options import speed
+from saddlewalk.options import add_markers, speed
 from saddlewalk.outputs import add_input, add_output
-from saddlewalk.table import read_series, write_table
-
-if TYPE_CHECKING:
-    from saddlewalk.core import Measurement
-
-LONGEST_S = 1e9
+from saddlewalk.table import write_table
 
 
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "supervise",
-        help="score recorded states as CSV",
-        description="Score recorded states as CSV. An empty cell is a result that is not there. "
+        help="score recorded states",
+        description="Score recorded states, as CSV. An empty cell is a result that is not there. "
         "flags: bits 0-15 saddle_fault_t, 16-23 saddle_limit_t, 24-31 the saddle_reason_t that "
         "decided the level.",
     )
@@ -30,8 +24,10 @@ def add_parser(subparsers: Any) -> None:
         dest="source",
         required=True,
         metavar="FILE",
-        help="states as CSV; - reads stdin",
+        help="states as CSV, or what plan, replay and demo write, or a recording: .c3d, .trc or "
+        "CSV with t, com_x ... rtoe_z in s and m; - reads CSV from stdin",
     )
+    add_markers(parser)
     add_output(parser, "--out", metavar="FILE", help="default: standard output")
     parser.add_argument(
         "--speed",
@@ -46,6 +42,8 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from saddlewalk.core import Command, body_of
+    from saddlewalk.gait.motion_capture import read_markers
+    from saddlewalk.gait.states import read_measurements
     from saddlewalk.recorded_states import SCORE_COLUMNS, recording_core, scored_rows
 
     config = load_config(args)
@@ -55,15 +53,13 @@ def run(args: argparse.Namespace) -> int:
         core.join(command)
         ceiling_m_s = body_of(config).speed_ceiling_m_s
         if args.speed >= ceiling_m_s:
-            note = f"is not feasible for this body: limited below {ceiling_m_s:.4g} m/s"
-            print(f"saddlewalk supervise: --speed {args.speed:g} {note}", file=sys.stderr)
-    rows = scored_rows(core, command, _measurements(args.source))
+            limited = f"not feasible for this body: limited below {ceiling_m_s:.4g} m/s"
+            _note(f"--speed {args.speed:g} is {limited}")
+    measurements = read_measurements(args.source, read_markers(args.markers), _note)
+    rows = scored_rows(core, command, measurements)
     write_table(args.out, SCORE_COLUMNS, rows)
     return 0
 
 
-def _measurements(source: str) -> Iterator[tuple[float, "Measurement"]]:
-    from saddlewalk.recorded_states import STATE_COLUMNS, measurement_of
-
-    for line, state in read_series(source, STATE_COLUMNS, LONGEST_S):
-        yield state["t_s"], measurement_of(f"{source}: line {line}", state)
+def _note(text: str) -> None:
+    print(f"saddlewalk supervise: {text}", file=sys.stderr)

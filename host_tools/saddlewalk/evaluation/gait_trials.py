@@ -12,7 +12,7 @@ import numpy as np
 from saddlewalk.core import Command, Core, Measurement, ffi, library
 from saddlewalk.errors import UserError
 from saddlewalk.gait.events import Gait, analyse
-from saddlewalk.gait.playback import measurements
+from saddlewalk.gait.playback import measurements, states_at_ticks
 from saddlewalk.gait.recording import Recording, load_recording
 from saddlewalk.ticks import Messages
 from saddlewalk.verdict import level_name, reason_name, ticks_in
@@ -48,7 +48,7 @@ def judge(path: Path, config: Any) -> GaitTrial:
     gait = analyse(recording)
     core, levels, reasons = Core(config), [], []
     from_s, to_s = _walking(recording, gait)
-    for time_s, messages in measurements(recording, gait.contact):
+    for time_s, messages in measurements(states_at_ticks(recording, gait.contact)):
         verdict = core.tick(round(time_s * 1e6), Command(), _measurement(messages)).verdict
         if from_s <= time_s <= to_s:
             levels.append(level_name(verdict.level))

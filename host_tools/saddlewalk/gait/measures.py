@@ -7,6 +7,7 @@ import numpy as np
 from saddlewalk.errors import UserError
 from saddlewalk.gait.events import (
     FootEvents,
+    Gait,
     Placement,
     foot_events,
     mean_speed,
@@ -93,6 +94,21 @@ def inhuman(quantity: str, value: float) -> str:
             "feet, or the sign of y, which points to the left"
         )
     return f"{quantity} {value:.4g} {unit} is not human: {low:g} to {high:g} {unit}"
+
+
+def implausible(recording: Recording, gait: Gait) -> list[str]:
+    """A line for what no human walk has, most often a unit, where any movement is taken."""
+    means = (
+        ("walking speed", gait.speed_m_s),
+        ("step length", gait.step_length_m),
+        ("step width", gait.step_width_m),
+    )
+    told = [inhuman(quantity, value) for quantity, value in means if not np.isnan(value)]
+    return [
+        f"{recording.source}: {text}; t in s, markers in m, x forward, y to the left?"
+        for text in told
+        if text
+    ]
 
 
 def _refuse_inhuman(measures: WalkMeasures, reasons: list[str]) -> None:

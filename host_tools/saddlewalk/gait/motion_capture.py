@@ -74,8 +74,11 @@ def load_walk(source: str, markers: Markers | None = None) -> Recording:
     return _in_task_frame(source, capture.time_s, points_m, notes)
 
 
-def read_markers(path: Path) -> Markers:
-    """The mapping file: TOML with a list of marker names for any of POINTS."""
+def read_markers(file: str | None) -> Markers:
+    """The mapping file, if there is one: TOML with a list of marker names for any of POINTS."""
+    if file is None:
+        return {}
+    path = Path(file)
     mapping = read_toml(path, "--markers")
     for point, names in mapping.items():
         if point not in POINTS:

@@ -3,46 +3,60 @@
 import contextlib
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import can
 import numpy as np
 
 from saddlewalk.errors import UserError
 from saddlewalk.gait.recording import Recording
+from saddlewalk.gait.states import State, nothing_at, state_at
 from saddlewalk.ticks import TICK_S, Messages, Signals, TickReader, next_tick, scores_of
 from saddlewalk.transport.wire import Sender
 
 ANSWER_TIMEOUT_S = 2.0
 
 
-def measurements(recording: Recording, contact: np.ndarray) -> Iterator[tuple[float, Messages]]:
-    """Every TICK_S from the start of the trial: (seconds since then, the messages of one set).
+def states_at_ticks(recording: Recording, contact: np.ndarray) -> Iterator[State]:
+    """Every TICK_S from the start of the trial, at seconds since then.
 
-    The wearer follows no plan, so the command is to stand. What the recording does not hold within
-    half a tick is NaN, which is sent as not available.
+    What the recording does not hold within half a tick was not measured.
     """
     since_start_s = recording.time_s - recording.time_s[0]
     for tick in range(math.floor(recording.duration_s / TICK_S + 1e-9) + 1):
         time_s = tick * TICK_S
         index = int(np.argmin(np.abs(since_start_s - time_s)))
         measured = abs(since_start_s[index] - time_s) <= TICK_S / 2
-        com_m, velocity_m_s = recording.com_m[index], recording.com_velocity_m_s[index]
-        missing = 0.0 if measured else math.nan
-        left_m, right_m = recording.cop_m[:, index] - com_m[:2] + missing
+        yield state_at(recording, contact, index, time_s) if measured else nothing_at(time_s)
+
+
+def measurements(states: Iterable[State]) -> Iterator[tuple[float, Messages]]:
+    """(time, the messages of one set). NaN is sent as not available, a contact then as none.
+
+    The wearer follows no plan, so the command is to stand.
+    """
+    for state in states:
         yield (
-            time_s,
+            state["t_s"],
             {
                 "COMMAND": {"MODE": 0, "SPEED": 0.0, "HEEL_STRIKE": 0.0},
                 "MEASURED_COM": {
-                    "HEIGHT": com_m[2] + missing,
-                    "VX": velocity_m_s[0] + missing,
-                    "VY": velocity_m_s[1] + missing,
+                    "HEIGHT": state["com_z_m"],
+                    "VX": state["com_vx_m_s"],
+                    "VY": state["com_vy_m_s"],
                 },
-                "MEASURED_LEFT": {"X": left_m[0], "Y": left_m[1], "CONTACT": contact[0, index]},
-                "MEASURED_RIGHT": {"X": right_m[0], "Y": right_m[1], "CONTACT": contact[1, index]},
+                "MEASURED_LEFT": _foot(state, "left"),
+                "MEASURED_RIGHT": _foot(state, "right"),
             },
         )
+
+
+def _foot(state: State, side: str) -> dict[str, float]:
+    return {
+        "X": state[f"{side}_x_m"] - state["com_x_m"],
+        "Y": state[f"{side}_y_m"] - state["com_y_m"],
+        "CONTACT": state[f"{side}_contact"] == 1,
+    }
 
 
 def play_lockstep(

@@ -1,5 +1,6 @@
 """Recorded walking trials: markers over time in the task frame (x forward, y left, z up; SI)."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -47,8 +48,14 @@ def load_recording(source: str) -> Recording:
     A cell that is empty, not finite or absurd is a missing measurement. Raises UserError naming
     file, line, column and value for anything else that is not a trial.
     """
+    rows = read_series(source, COLUMNS, LONGEST_S)
+    return recording_of(source, (list(cells.values()) for _, cells in rows))
+
+
+def recording_of(source: str, cells: Iterable[Sequence[float]]) -> Recording:
+    """A trial from its rows of COLUMNS."""
     name = "standard input" if source == "-" else source
-    rows = [list(cells.values()) for _, cells in read_series(source, COLUMNS, LONGEST_S)]
+    rows = list(cells)
     if len(rows) < 2:
         raise UserError(f"{name}: {len(rows)} samples; a trial needs at least 2")
     table = np.array(rows)
