@@ -12,6 +12,7 @@ import pytest
 from laboratory import LABORATORIES, PERSON, RATE_HZ, c3d_file, laboratory, trc_file, walk_of
 from saddlewalk.errors import UserError
 from saddlewalk.gait.c3d_layout import check_layout
+from saddlewalk.gait.measures import measure
 from saddlewalk.gait.motion_capture import load_walk
 
 AXES = LABORATORIES["z up, walking along -y"]
@@ -68,7 +69,14 @@ DAMAGED = {
         lambda d: patched(d, 16, struct.pack("<H", 9999)),
         "data begin in block 9999 of",
     ),
-    "points": (lambda d: patched(d, 2, b"\xff\xff"), "65535 points in the header, POINT:USED 8"),
+    "points": (
+        lambda d: patched(d, place(d, "USED") + 2, b"\xff\xff"),
+        "40 frames of 65535 points and 0 analog values take 41942400 bytes; the file has",
+    ),
+    "no points": (
+        lambda d: patched(d, place(d, "USED") + 2, bytes(2)),
+        "POINT:USED is 0: there are no markers",
+    ),
     "cut": (lambda d: d[: -2 * BLOCK], r"40 frames of 8 points and 0 analog values take 5120"),
     "empty": (lambda d: b"", "0 bytes; header and parameters take 1024 or more"),
 }
@@ -142,7 +150,7 @@ def test_a_reader_that_takes_too_much_is_stopped(tmp_path, monkeypatch):
     (tmp_path / "ezc3d.py").write_text("def c3d(path):\n    bytearray(1 << 30)\n")
     monkeypatch.syspath_prepend(tmp_path)
     path = c3d_file(tmp_path / "walk.c3d", markers())
-    with pytest.raises(UserError, match=r"walk\.c3d: not a C3D file with markers"):
+    with pytest.raises(UserError, match=r"walk\.c3d: not a C3D file"):
         load_walk(path)
     (tmp_path / "ezc3d.py").write_text("def c3d(path):\n    while True:\n        pass\n")
     monkeypatch.setattr("saddlewalk.gait.c3d_file.LEAST_CPU_S", 1.0)
@@ -293,3 +301,17 @@ def test_a_short_gap_is_filled_and_a_long_one_is_not(kind, tmp_path):
     assert loaded.heel_m[0] == pytest.approx(whole.heel_m[0], abs=0.008)
     assert np.flatnonzero(np.isnan(loaded.heel_m[1, :, 0])).tolist() == [*range(200, 200 + long)]
     assert np.flatnonzero(np.isnan(loaded.toe_m[1, :, 0])).tolist() == [0, 1, 2]
+
+
+def test_steps_that_a_long_gap_hides_are_left_out_of_the_fit(tmp_path):
+    whole = measure(load_walk(c3d_file(tmp_path / "walk.c3d", markers(9.0))))
+    holed = markers(9.0)
+    holed["Ann:LASI"][500:600] = np.nan  # half a second at 200 Hz
+    holed["Ann:RHEE"][1000:1100] = np.nan
+    walk = measure(load_walk(c3d_file(tmp_path / "walk.c3d", holed)))
+    assert walk.speed_m_s == pytest.approx(whole.speed_m_s, abs=2e-3)
+    assert len(walk.vertical_m) < len(whole.vertical_m)
+    for quantity in ("length_m", "width_m", "vertical_m", "lateral_m", "com_top_m"):
+        found, known = getattr(walk, quantity), getattr(whole, quantity)
+        assert len(known) - 4 <= len(found) <= len(known), quantity
+        assert found.mean() == pytest.approx(known.mean(), abs=2e-3), quantity

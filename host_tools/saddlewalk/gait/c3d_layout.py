@@ -113,11 +113,9 @@ def _check_frames(data: bytes, processor: int, counts: Counts) -> None:
     (start,) = struct.unpack_from(BYTE_ORDERS[processor] + "H", data, 16)
     if not 2 * BLOCK <= BLOCK * (start - 1) < len(data):
         raise _LayoutError(f"the data begin in block {start} of {len(data) // BLOCK}")
-    used = counts.get(("POINT", "USED"), (points,))[0]
-    if not 0 < points == used:
-        raise _LayoutError(
-            f"{points} points in the header, POINT:USED {used}; must be the same, above 0"
-        )
+    points = counts.get(("POINT", "USED"), (points,))[0]  # ezc3d goes by it too
+    if points == 0:
+        raise _LayoutError("POINT:USED is 0: there are no markers")
     frames = _frames(first, last, counts)
     if frames < 1:
         raise _LayoutError(f"frames {first} to {last}: there must be at least one")
