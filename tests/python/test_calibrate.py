@@ -162,7 +162,9 @@ def test_laboratory_file_calibrates_as_the_csv_does(kind, write, tmp_path):
     assert calibrated(tmp_path, source) == pytest.approx(expected, abs=2e-3)
 
 
-@pytest.mark.parametrize(("kind", "written"), [("c3d", np.nan), ("c3d", 0.0), ("trc", np.nan)])
+@pytest.mark.parametrize(
+    ("kind", "written"), [(kind, gap) for kind in WRITERS for gap in (np.nan, 0.0)]
+)
 def test_marker_that_was_not_seen_is_missing(kind, written, tmp_path):
     markers = laboratory(walk_of(PERSON, 1.0), LABORATORIES["z up, walking along -y"])
     markers["Ann:LHEE"][100:120] = written

@@ -30,6 +30,7 @@ def read_trc(path: Path) -> Capture:
     if len(backwards):
         raise UserError(f"{path}: frame {backwards[0] + 2}: the time must be later than before")
     points = rows[:, 1:].reshape(len(rows), len(names), 3)
+    points[~points.any(axis=2)] = math.nan  # some write a marker that was not seen as zeros
     return Capture(
         time_s=rows[:, 0],
         markers={name: points[:, i] for i, name in enumerate(names)},
