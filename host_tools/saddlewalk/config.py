@@ -5,6 +5,7 @@ import difflib
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from saddlewalk.errors import UserError
@@ -29,18 +30,18 @@ def add_body_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def load_config(args: argparse.Namespace, ankle: str | None = None) -> Any:
-    """A saddle_config_t: the paper's defaults, then the file, then the options.
+def load_config(
+    args: argparse.Namespace,
+    ankle: str | None = None,
+    body: Mapping[str, float] = MappingProxyType({}),
+) -> Any:
+    """A saddle_config_t: the paper's defaults, then the body, the file and the options.
 
     Raises UserError naming the option, file, field and value that is wrong.
     """
     from saddlewalk.core import describe_bad_field, ffi, library
 
-    fields = _read_file(args.config) if args.config else {}
-    if args.height is not None:
-        fields["body_height_m"] = args.height
-    if args.mass is not None:
-        fields["body_mass_kg"] = args.mass
+    fields = {**body, **given_fields(args)}
     if ankle is not None:
         fields["ankle"] = ANKLES[ankle]
     config = configuration(fields)
@@ -49,6 +50,16 @@ def load_config(args: argparse.Namespace, ankle: str | None = None) -> Any:
         name = ffi().string(bad_field).decode()
         raise UserError(f"{_origin(name, args)}{describe_bad_field(name, config)}")
     return config
+
+
+def given_fields(args: argparse.Namespace) -> dict[str, float | int]:
+    """Fields of saddle_config_t as the file and the options of add_body_options() give them."""
+    fields = _read_file(args.config) if args.config else {}
+    if args.height is not None:
+        fields["body_height_m"] = args.height
+    if args.mass is not None:
+        fields["body_mass_kg"] = args.mass
+    return fields
 
 
 def configuration(fields: Mapping[str, float | int]) -> Any:

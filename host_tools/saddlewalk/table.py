@@ -2,10 +2,12 @@
 
 import contextlib
 import csv
+import gzip
 import itertools
 import math
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TextIO
 
@@ -49,7 +51,16 @@ def read_table(source: str, columns: Sequence[str]) -> Iterator[tuple[int, dict[
 def _read_rows(
     source: str, layouts: Sequence[Sequence[str]]
 ) -> Iterator[tuple[int, dict[str, float]]]:
-    """The columns of the first layout that the header has, or else of the one it nearly has."""
+    for line, row in read_texts(source, *layouts):
+        yield line, numbers_of(source, line, row, list(row))
+
+
+def read_texts(source: str, *layouts: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
+    """Rows of a CSV file, compressed if it ends in .gz, as (line number, column -> text).
+
+    The columns of the first layout that the header has, or else of the one it nearly has. Raises
+    UserError naming the file and the column that is missing or the line that is damaged.
+    """
     name = _name(source)
     try:
         with _open(source) as file:
@@ -58,7 +69,12 @@ def _read_rows(
             columns = min(layouts, key=lambda names: len(set(names) - set(header)))
             _check_header(name, header, columns)
             for row in reader:
-                yield reader.line_num, _numbers(name, reader.line_num, row, columns)
+                if None in row or None in row.values():
+                    where = f"{name}: line {reader.line_num}"
+                    raise UserError(f"{where}: not as many cells as the header has columns")
+                yield reader.line_num, {column: row[column] for column in columns}
+    except (gzip.BadGzipFile, zlib.error, EOFError) as error:
+        raise UserError(f"{name}: not a whole gzip file: {error}") from error
     except OSError as error:
         raise UserError(f"{name}: {error.strerror}") from error
     except (csv.Error, UnicodeDecodeError) as error:
@@ -107,19 +123,21 @@ def _open(source: str) -> contextlib.AbstractContextManager[TextIO]:
         if sys.stdin is None:
             raise UserError("standard input is closed: give a file")
         return contextlib.nullcontext(sys.stdin)
+    if source.endswith(".gz"):
+        return gzip.open(source, "rt", newline="", encoding="utf-8-sig")
     return Path(source).open(newline="", encoding="utf-8-sig")
 
 
-def _numbers(name: str, line: int, row: dict[str, str], columns: Sequence[str]) -> dict[str, float]:
-    if None in row or None in row.values():
-        raise UserError(f"{name}: line {line}: not as many cells as the header has columns")
+def numbers_of(
+    source: str, line: int, row: Mapping[str, str], columns: Sequence[str]
+) -> dict[str, float]:
+    """The numbers of these columns; an empty cell is NaN. UserError: a text is no number."""
     numbers = {}
     for column in columns:
         text = row[column].strip()
         try:
             numbers[column] = float(text) if text else math.nan
         except ValueError:
-            raise UserError(
-                f"{name}: line {line}, {column}: {text!r} is not a number (empty: not measured)"
-            ) from None
+            where = f"{_name(source)}: line {line}, {column}"
+            raise UserError(f"{where}: {text!r} is not a number (empty: not measured)") from None
     return numbers

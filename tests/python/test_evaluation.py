@@ -11,9 +11,10 @@ import pytest
 from saddlewalk.cli import main
 from saddlewalk.core import ffi, library
 from saddlewalk.emulation.wearer import Body
-from saddlewalk.evaluation.baselines import FOOT_BREADTH, FOOT_LENGTH, hof_margin_m, hull_margin_m
-from saddlewalk.evaluation.detection import detection_of, push_limits, recovery_worth, roc
+from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_margin_m
+from saddlewalk.evaluation.detection import detection_of, evidence, push_limits, recovery_worth
 from saddlewalk.evaluation.region import POSTURES, Posture, bring_to_rest, explore, grid
+from saddlewalk.evaluation.scoring import roc
 from saddlewalk.evaluation.walks import (
     BEYOND_HELP_S,
     CELLS,
@@ -24,11 +25,11 @@ from saddlewalk.evaluation.walks import (
     WINDOWS,
     Trial,
     Walk,
+    course_of,
     draw,
     evaluate,
     judge,
     run,
-    ticks_of,
 )
 from synthetic_walk import Walk as RecordedWalk
 from synthetic_walk import csv_text
@@ -47,7 +48,7 @@ def walk_of(index: int, fell_at_s=math.nan, alarm_at_s=math.nan, **changes) -> W
     margin = changes.pop("margin", math.nan)
     trial = Trial("planned", index, -1, 1.0, 0.0, 6.0, 10.0, 0)
     least = {window: dict.fromkeys(MARGINS, margin) for window in WINDOWS}
-    walk = Walk(trial, fell_at_s, alarm_at_s, least, {1: 10}, {0: 10}, {1: 12})
+    walk = Walk(trial, fell_at_s, alarm_at_s, least, {1: 10}, {0: 10}, {1: 12}, {})
     return replace(walk, trial=replace(trial, **changes))
 
 
@@ -57,18 +58,19 @@ def test_nobody_falls_while_stopping(kind, index):
     """One once crawled through a step too slow to stand on a leg; one's last swing never began."""
     trial = draw(1, index, kind, MASS_KG)
     assert 0.67 < trial.speed_m_s < 0.71
-    ticks, fell_at_s = run(trial, default_config())
-    assert math.isnan(fell_at_s) and ticks["mode"][-1] == library().SADDLE_MODE_STANDING
+    course = run(trial, default_config())
+    assert math.isnan(course.fell_at_s)
+    assert course.ticks["mode"][-1] == library().SADDLE_MODE_STANDING
 
 
 def test_one_rectangle_margin_is_the_distance_to_its_border():
     height_m = 2.0
-    half = np.array([FOOT_LENGTH, FOOT_BREADTH]) * height_m / 2
+    half = half_foot_m(height_m)
     foot = np.broadcast_to([0.3, -0.1], (4, 2, 2))
     points = np.array([[0.3, -0.1], [0.3 + half[0] + 0.2, -0.1], [0.3, -0.1 + half[1] - 0.01],
                        [0.3 - half[0] - 0.03, -0.1 - half[1] - 0.04]])  # fmt: skip
     expected = [half[1], -0.2, 0.01, -0.05]
-    assert hull_margin_m(points, foot, height_m) == pytest.approx(expected, abs=1e-12)
+    assert hull_margin_m(points, foot, half) == pytest.approx(expected, abs=1e-12)
 
 
 def test_hull_margin_of_two_feet_agrees_with_a_fine_border():
@@ -76,14 +78,12 @@ def test_hull_margin_of_two_feet_agrees_with_a_fine_border():
     height_m, count = 1.79, 300
     feet = random.uniform(-0.6, 0.6, (count, 2, 2))
     points = random.uniform(-0.5, 0.5, (count, 2))
-    half = np.array([FOOT_LENGTH, FOOT_BREADTH]) * height_m / 2
+    half = half_foot_m(height_m)
     angles = np.linspace(0, 2 * np.pi, 20_001)
     normals = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     # A convex set's signed margin is the least of its supporting lines' distances, seen from
     # inside; from outside, the greatest violation. Normals 314 microradians apart, 1.2 m at most.
-    for foot, point, margin in zip(
-        feet, points, hull_margin_m(points, feet, height_m), strict=True
-    ):
+    for foot, point, margin in zip(feet, points, hull_margin_m(points, feet, half), strict=True):
         support = (normals @ foot.T).max(axis=1) + np.abs(normals) @ half
         assert margin == pytest.approx((support - normals @ point).min(), abs=4e-4)
 
@@ -92,7 +92,7 @@ def test_hof_margin_counts_the_feet_on_the_ground_alone():
     feet = np.array([[[0.0, 0.1], [0.5, -0.1]]] * 3)
     contact = np.array([[True, True], [True, False], [False, False]])
     xcom = np.array([[0.5, -0.1]] * 3)
-    both, left, none = hof_margin_m(xcom, feet, contact, 1.79)
+    both, left, none = hof_margin_m(xcom, feet, contact, half_foot_m(1.79))
     assert both > 0 > left and math.isnan(none)
 
 
@@ -165,7 +165,7 @@ def test_area_under_the_roc_counts_pairs_and_halves_ties():
     ]
     areas = detection_of(walks).areas
     assert areas[WINDOWS[0]]["S_SW"] == (3 + 0.5) / 4
-    false, true = roc(walks, WINDOWS[0], "S_SW")
+    false, true = roc(*evidence(walks, WINDOWS[0], "S_SW"))
     assert np.trapezoid(true, false) == (3 + 0.5) / 4
     assert math.isnan(detection_of(walks[:2]).areas[WINDOWS[0]]["S_SW"])
 
@@ -201,8 +201,8 @@ def test_trials_are_drawn_alike_for_both_kinds_and_spread_over_what_is_promised(
 def test_a_push_that_fells_is_foreseen_and_judged_by_its_ticks():
     config = default_config()
     trial = replace(draw(1, 0, "planned", MASS_KG), impulse_n_s=60.0, direction_deg=90.0)
-    ticks, fell_at_s = run(trial, config)
-    walk = judge(trial, ticks, fell_at_s)
+    course = run(trial, config)
+    walk, ticks, fell_at_s = judge(trial, course), course.ticks, course.fell_at_s
     assert walk.fell and trial.push_time_s < walk.alarm_at_s < fell_at_s
     assert ticks["time_s"][-1] < fell_at_s
     since_push_s = ticks["time_s"] - trial.push_time_s
@@ -221,17 +221,17 @@ def test_the_same_walks_whatever_the_number_of_jobs():
     shared = evaluate(3, 3, config, 2, lambda done: None)
     assert [repr(walk) for walk in alone] == [repr(walk) for walk in shared]
     assert told[-1] == len(alone) == len(KINDS) * (3 + 1)
-    trial, _, fell_at_s = ticks_of(3, 1, "recovery", config)
+    trial, course = course_of(3, 1, "recovery", config)
     again = next(walk for walk in alone if walk.trial == trial)
-    assert repr(again.fell_at_s) == repr(fell_at_s)
+    assert repr(again.fell_at_s) == repr(course.fell_at_s)
 
 
 def test_a_staircase_pushes_harder_until_the_wearer_falls():
     config = default_config()
     impulses = [
-        ticks_of(2, index, "planned", config)[0].impulse_n_s for index in (1, 1 + 2 * CELLS)
+        course_of(2, index, "planned", config)[0].impulse_n_s for index in (1, 1 + 2 * CELLS)
     ]
-    fell = math.isfinite(ticks_of(2, 1, "planned", config)[2])
+    fell = math.isfinite(course_of(2, 1, "planned", config)[1].fell_at_s)
     assert (impulses[1] < impulses[0]) == fell
 
 

@@ -1,14 +1,18 @@
-"""`saddlewalk evaluate`: how well the supervisor foretells falls, and what its claims are worth."""
+"""`saddlewalk evaluate`: how well the supervisor announces falls, and what its claims are worth."""
 
 import argparse
+import contextlib
+import functools
+import itertools
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from saddlewalk.config import add_body_options, load_config
+from saddlewalk.atomic_write import write_text
+from saddlewalk.config import add_body_options, given_fields, load_config
 from saddlewalk.options import add_campaign_options, whole_number_in
 from saddlewalk.outputs import OutputFolder, add_input, add_output
 
@@ -17,10 +21,18 @@ if TYPE_CHECKING:
 
     from saddlewalk.evaluation.detection import Detection
     from saddlewalk.evaluation.gait_trials import GaitTrial
+    from saddlewalk.evaluation.recorded_falls import Scored as ScoredWalk
     from saddlewalk.evaluation.walks import Walk
 
 WALKS = 1000
-FILES = ("evaluation.json", "walks.csv", "roc.png", "region.png")
+KINDS_DRAWN = ("misses", "false-alarms")
+DRAWN = 10  # of the worst misses, and of the worst false alarms
+EMULATED_FILES = ("evaluation.json", "walks.csv", "roc.png", "region.png")
+FALLS_FILES = ("falls.csv", "falls-roc.png")
+DRAWINGS = {kind: [f"{kind}/{k + 1:02}.png" for k in range(DRAWN)] for kind in KINDS_DRAWN}
+FILES = ("scores.json", *EMULATED_FILES, *FALLS_FILES, *itertools.chain(*DRAWINGS.values()))
+Figures = Mapping[str, Any]
+Writer = Callable[[Path], Iterable[str]]  # to a new folder; gives names and what they show
 
 
 def add_parser(subparsers: Any) -> None:
@@ -30,11 +42,18 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--walks",
         type=whole_number_in(1, 100_000),
-        default=WALKS,
         metavar="N",
-        help=f"pushed walks of each kind of wearer (default {WALKS})",
+        help=f"pushed walks of each kind of emulated wearer (default {WALKS}; with --falls none)",
     )
     add_campaign_options(parser)
+    add_input(
+        parser,
+        "--falls",
+        type=Path,
+        metavar="FOLDER",
+        help="recorded falls: walkers.csv, walks.csv, states/WALKER.csv.gz. Each walker has its "
+        "own mass and height, if --config, --mass or --height do not say otherwise",
+    )
     add_input(
         parser,
         "--gait",
@@ -48,7 +67,11 @@ def add_parser(subparsers: Any) -> None:
         output=OutputFolder(FILES),
         type=Path,
         metavar="FOLDER",
-        help=f"for {', '.join(FILES)}",
+        help=f"for scores.json; of emulated wearers {', '.join(EMULATED_FILES)}; of --falls "
+        f"{', '.join(FALLS_FILES)}, and the worst misses and false alarms, drawn one by one",
+    )
+    add_output(
+        parser, "--json", metavar="FILE", help="the figures of all walkers side by side; - prints"
     )
     add_body_options(parser)
     parser.set_defaults(run=run)
@@ -57,19 +80,45 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
-    from saddlewalk.evaluation.detection import detection_of, push_limits, recovery_worth
     from saddlewalk.evaluation.gait_trials import judge_folder
+
+    console = Console(stderr=args.json == "-")
+    config = load_config(args)
+    trials = judge_folder(args.gait, config) if args.gait else []
+    results: dict[str, Figures] = {}
+    writers: list[Writer] = []
+    if args.walks or not args.falls:
+        figures, writer = _emulate(console, args, config, trials)
+        results |= figures
+        writers.append(writer)
+    if args.falls:
+        figures, writer = _score_falls(args)
+        results |= figures
+        writers.append(writer)
+    if trials:
+        results |= _tell_trials(console, trials)
+    _tell_side_by_side(console, results)
+    text = _json(results)
+    if args.json:
+        write_text("--json", args.json, text)
+    if args.out:
+        _write(console, args.out, [*writers, functools.partial(_write_scores, text)])
+    return 0
+
+
+def _emulate(
+    console: "Console", args: argparse.Namespace, config: Any, trials: Sequence["GaitTrial"]
+) -> tuple[dict[str, Figures], Writer]:
+    """Walk, and tell about the emulated wearer; its figures by kind, and what writes its files."""
+    from saddlewalk.evaluation.detection import detection_of, push_limits, recovery_worth
     from saddlewalk.evaluation.region import CLAIMS, POSTURES, explore, grid
     from saddlewalk.evaluation.walks import KINDS
 
-    config = load_config(args)
-    console = Console()
-    console.print(f"seed {args.seed}, {args.walks} pushed walks of each kind, {args.jobs} jobs")
-    trials = judge_folder(args.gait, config) if args.gait else []
-    walks = _walk(args, config)
-    detections = {
-        kind: detection_of(walk for walk in walks if walk.trial.kind == kind) for kind in KINDS
-    }
+    count = args.walks or WALKS
+    console.print(f"seed {args.seed}, {count} pushed walks of each kind, {args.jobs} jobs")
+    walks = _walk(args, count, config)
+    by_kind = {kind: [walk for walk in walks if walk.trial.kind == kind] for kind in KINDS}
+    detections = {kind: detection_of(by_kind[kind]) for kind in KINDS}
     worth, limits = recovery_worth(walks), push_limits(walks)
     regions = [explore(posture, grid(), config) for posture in POSTURES]
     confusions = {
@@ -80,38 +129,76 @@ def run(args: argparse.Namespace) -> int:
     _tell_areas(console, detections)
     _tell_limits(console, limits, worth)
     _tell_confusions(console, confusions)
-    if trials:
-        _tell_trials(console, trials)
-    if args.out:
-        result = {
-            "seed": args.seed,
-            "walks": args.walks,
-            "detection": {
-                kind: {**asdict(found), "alarm_share": found.alarm_share}
-                for kind, found in detections.items()
-            },
-            "recovery_worth": worth,
-            "push_limits_n_s": limits,
-            "region": confusions,
-            "gait": [asdict(trial) for trial in trials],
-        }
-        _write(console, args.out, result, walks, config)
-    return 0
+    result = {
+        "seed": args.seed,
+        "walks": count,
+        "detection": {
+            kind: {**asdict(found), "alarm_share": found.alarm_share}
+            for kind, found in detections.items()
+        },
+        "recovery_worth": worth,
+        "push_limits_n_s": limits,
+        "region": confusions,
+        "gait": [asdict(trial) for trial in trials],
+    }
+    figures = {f"emulated_{kind}": _emulated_figures(args, by_kind[kind]) for kind in KINDS}
+    return figures, functools.partial(_write_emulated, result, walks, config)
 
 
-def _walk(args: argparse.Namespace, config: Any) -> list["Walk"]:
+def _emulated_figures(args: argparse.Namespace, walks: Sequence["Walk"]) -> Figures:
+    from saddlewalk.evaluation.side_by_side import walker_figures
+
+    scores = [
+        dict(zip(walk.scores, parts, strict=True))
+        for walk in walks
+        for parts in zip(*walk.scores.values(), strict=True)
+    ]
+    return walker_figures(scores, {name: str(value) for name, value in given_fields(args).items()})
+
+
+def _score_falls(args: argparse.Namespace) -> tuple[dict[str, Figures], Writer]:
+    """Score every recorded walk; figures by walker, and what writes their files."""
+    from saddlewalk.evaluation.recorded_falls import read_walkers, read_walks, score_walks
+    from saddlewalk.evaluation.side_by_side import walker_figures
+
+    given = {name: str(value) for name, value in given_fields(args).items()}
+    walkers = read_walkers(args.falls)
+    configs = {
+        walker.name: load_config(args, body={key: float(text) for key, text in walker.body.items()})
+        for walker in walkers
+    }
+    walks = read_walks(args.falls, walkers)
+    tasks = [(walk, configs[name]) for name, each in walks.items() for walk in each]
+    with _progress("recorded walks", len(tasks)) as done:
+        scored = iter(score_walks(tasks, args.seed, args.jobs, done))
+    by_walker = {name: list(itertools.islice(scored, len(each))) for name, each in walks.items()}
+    figures = {
+        walker.name: walker_figures(
+            [each.scores for each in by_walker[walker.name]], walker.body | given
+        )
+        for walker in walkers
+    }
+    return figures, functools.partial(_write_falls, by_walker)
+
+
+def _walk(args: argparse.Namespace, count: int, config: Any) -> list["Walk"]:
+    from saddlewalk.evaluation.walks import KINDS, calm_walks, evaluate
+
+    total = len(KINDS) * (count + calm_walks(count))
+    with _progress("walks", total) as done:
+        return evaluate(args.seed, count, config, args.jobs, done)
+
+
+@contextlib.contextmanager
+def _progress(name: str, total: int) -> Iterator[Callable[[int], None]]:
+    """A bar on standard error while it lasts, and what tells it how much is done."""
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TimeRemainingColumn
 
-    from saddlewalk.evaluation.walks import KINDS, calm_walks, evaluate
-
     columns = (*Progress.get_default_columns()[:2], MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        total = len(KINDS) * (args.walks + calm_walks(args.walks))
-        task = bar.add_task("walks", total=total)
-        return evaluate(
-            args.seed, args.walks, config, args.jobs, lambda done: bar.update(task, completed=done)
-        )
+        task = bar.add_task(name, total=total)
+        yield lambda done: bar.update(task, completed=done)
 
 
 def _table(title: str, *columns: str) -> Any:
@@ -197,7 +284,9 @@ def _tell_confusions(console: "Console", confusions: dict[str, dict[str, dict[st
         console.print(table)
 
 
-def _tell_trials(console: "Console", trials: Sequence["GaitTrial"]) -> None:
+def _tell_trials(console: "Console", trials: Sequence["GaitTrial"]) -> dict[str, Figures]:
+    from saddlewalk.evaluation.side_by_side import PEOPLE, people_figures
+
     levels = list(trials[0].levels)
     table = _table("Recorded people who did not fall, ticks", "trial", "m/s", *levels, "because")
     for trial in trials:
@@ -208,24 +297,78 @@ def _tell_trials(console: "Console", trials: Sequence["GaitTrial"]) -> None:
     shares = (_percent(total / max(sum(totals), 1)) for total in totals)
     table.add_row("all", "", *shares, "")
     console.print(table)
+    return {PEOPLE: people_figures(trials)}
 
 
-def _write(
-    console: "Console", folder: Path, result: dict[str, Any], walks: list["Walk"], config: Any
-) -> None:
+def _tell_side_by_side(console: "Console", results: dict[str, Figures]) -> None:
+    from saddlewalk.evaluation.scoring import INPUTS
+    from saddlewalk.evaluation.side_by_side import tables
+
+    for inputs in INPUTS:
+        for table in tables(results, inputs):
+            console.print(table)
+
+
+def _write(console: "Console", folder: Path, writers: Sequence[Writer]) -> None:
     from saddlewalk.atomic_write import whole_folder
+
+    with whole_folder("--out", folder, FILES) as new:
+        told = [line for writer in writers for line in writer(new)]
+    for line in told:
+        console.print(f"  {folder / line}")
+
+
+def _write_scores(text: str, new: Path) -> Iterator[str]:
+    (new / "scores.json").write_text(text)
+    yield "scores.json"
+
+
+def _write_emulated(
+    result: dict[str, Any], walks: list["Walk"], config: Any, new: Path
+) -> Iterator[str]:
     from saddlewalk.evaluation.pictures import draw_region, draw_rocs
     from saddlewalk.table import write_table
 
     rows = [walk.row() for walk in walks]
-    with whole_folder("--out", folder, FILES) as new:
-        write_table(str(new / "walks.csv"), list(rows[0]), (list(row.values()) for row in rows))
-        text = json.dumps(_without_nan(result), indent=1)
-        (new / "evaluation.json").write_text(text + "\n")
-        draw_rocs(walks, new / "roc.png")
-        draw_region(config, new / "region.png")
-    for name in FILES:
-        console.print(f"  {folder / name}")
+    write_table(str(new / "walks.csv"), list(rows[0]), (list(row.values()) for row in rows))
+    (new / "evaluation.json").write_text(_json(result))
+    draw_rocs(walks, new / "roc.png")
+    draw_region(config, new / "region.png")
+    yield from EMULATED_FILES
+
+
+def _write_falls(by_walker: dict[str, list["ScoredWalk"]], new: Path) -> Iterator[str]:
+    from saddlewalk.evaluation.fall_pictures import (
+        draw_rocs,
+        draw_walk,
+        title_of,
+        worst_false_alarms,
+        worst_misses,
+    )
+    from saddlewalk.table import write_table
+
+    exact = {name: [each.scores["exact"] for each in walks] for name, walks in by_walker.items()}
+    rows = [{"walker": name, **each.row()} for name, scores in exact.items() for each in scores]
+    write_table(str(new / "falls.csv"), list(rows[0]), (list(row.values()) for row in rows))
+    draw_rocs(exact, new / "falls-roc.png")
+    yield from FALLS_FILES
+    for kind, worst in zip(KINDS_DRAWN, (worst_misses, worst_false_alarms), strict=True):
+        (new / kind).mkdir()
+        walks = _in_turns([worst(walks) for walks in by_walker.values()])
+        for name, walk in zip(DRAWINGS[kind], walks, strict=False):
+            draw_walk(walk, new / name)
+            yield f"{name}  {title_of(walk)}"
+
+
+def _in_turns(lists: Sequence[Sequence[Any]]) -> Iterator[Any]:
+    """The first of each, then the second of each, and so on."""
+    nothing = object()
+    turns = itertools.chain.from_iterable(itertools.zip_longest(*lists, fillvalue=nothing))
+    return (each for each in turns if each is not nothing)
+
+
+def _json(value: Any) -> str:
+    return json.dumps(_without_nan(value), indent=1) + "\n"
 
 
 def _without_nan(value: Any) -> Any:

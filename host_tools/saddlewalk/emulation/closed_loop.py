@@ -19,6 +19,7 @@ class Tick:
 
     time_s: float
     measured: emulator.Measurement
+    exact: emulator.Measurement  # the same without the sensors' noise
     output: Any  # saddle_output_t
     plan: Plan
 
@@ -35,10 +36,10 @@ def walk(
     """
     firmware, index = core.Core(config), 0
     while True:
-        measured = wearer.measure()
+        exact, measured = wearer.exact(), wearer.measure()
         time_s = index * TICK_S
         output = firmware.tick(round(time_s * 1e6), schedule(time_s), measurement_of(measured))
-        tick = Tick(time_s, measured, output, plan_of(output))
+        tick = Tick(time_s, measured, exact, output, plan_of(output))
         wearer.follow(tick.plan)
         yield tick
         for step in range(1, STEPS_A_TICK + 1):

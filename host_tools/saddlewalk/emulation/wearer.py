@@ -286,14 +286,25 @@ class Wearer:
         """What noisy sensors see now; every call draws its own noise."""
         position, velocity = self.noise.position_m, self.noise.velocity_m_s
         draw = [float(value) for value in self._random.standard_normal(7)]
-        left, right = (foot.position_m - self.com_m for foot in self.feet)
+        exact = self.exact()
+        left, right = exact.feet_m
         return Measurement(
-            height_m=self.height_m + position * draw[0],
-            velocity_m_s=self.velocity_m_s + velocity * complex(draw[1], draw[2]),
+            height_m=exact.height_m + position * draw[0],
+            velocity_m_s=exact.velocity_m_s + velocity * complex(draw[1], draw[2]),
             feet_m=(
                 left + position * complex(draw[3], draw[4]),
                 right + position * complex(draw[5], draw[6]),
             ),
+            contact=exact.contact,
+        )
+
+    def exact(self) -> Measurement:
+        """What sensors without noise would see now."""
+        left, right = (foot.position_m - self.com_m for foot in self.feet)
+        return Measurement(
+            height_m=self.height_m,
+            velocity_m_s=self.velocity_m_s,
+            feet_m=(left, right),
             contact=(self.feet[LEFT].contact, self.feet[RIGHT].contact),
         )
 

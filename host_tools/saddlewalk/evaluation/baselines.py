@@ -1,7 +1,7 @@
 """Two textbook margins to compare with, from the same measurements: outlines of the feet alone.
 
-A foot is a rectangle about its CoP, 0.152 of the body's height long and 0.055 broad (Drillis and
-Contini 1966, as in Winter, Biomechanics and Motor Control of Human Movement).
+A foot is a rectangle about its CoP. Of a person it is 0.152 of the body's height long and 0.055
+broad (Drillis and Contini 1966, as in Winter, Biomechanics and Motor Control of Human Movement).
 """
 
 import numpy as np
@@ -10,24 +10,30 @@ FOOT_LENGTH = 0.152  # of the body's height
 FOOT_BREADTH = 0.055
 
 
-def hull_margin_m(point_m: np.ndarray, cop_m: np.ndarray, height_m: float) -> np.ndarray:
+def half_foot_m(height_m: float) -> np.ndarray:
+    """Half of the length and breadth of the foot of a person of this height."""
+    return np.array([FOOT_LENGTH, FOOT_BREADTH]) * height_m / 2
+
+
+def hull_margin_m(point_m: np.ndarray, cop_m: np.ndarray, half_m: np.ndarray) -> np.ndarray:
     """Signed distance of each point to the border of the convex hull of two feet, positive inside.
 
-    point_m: (n, 2); cop_m: (n, 2, 2), left and right; the same CoP twice: one foot.
+    point_m: (n, 2); cop_m: (n, 2, 2), left and right; the same CoP twice: one foot. half_m: (2,),
+    half of a foot's length and breadth.
     """
-    half = np.array([FOOT_LENGTH, FOOT_BREADTH]) * height_m / 2
-    return convex_margin_m(point_m - cop_m[:, 0], hull_corners_m(cop_m[:, 1] - cop_m[:, 0], half))
+    corners_m = hull_corners_m(cop_m[:, 1] - cop_m[:, 0], half_m)
+    return convex_margin_m(point_m - cop_m[:, 0], corners_m)
 
 
 def hof_margin_m(
-    xcom_m: np.ndarray, cop_m: np.ndarray, contact: np.ndarray, height_m: float
+    xcom_m: np.ndarray, cop_m: np.ndarray, contact: np.ndarray, half_m: np.ndarray
 ) -> np.ndarray:
     """Hof's margin of stability (2005): of the XCoM in the hull of the feet on the ground.
 
     NaN while no foot is. contact: (n, 2) of bool.
     """
     standing_m = np.where(contact[..., None], cop_m, cop_m[:, ::-1])
-    margin_m = hull_margin_m(xcom_m, standing_m, height_m)
+    margin_m = hull_margin_m(xcom_m, standing_m, half_m)
     return np.where(contact.any(axis=1), margin_m, np.nan)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from saddlewalk.evaluation.scoring import area, known
 from saddlewalk.evaluation.walks import BEYOND_HELP_S, KINDS, MARGINS, WINDOWS, Walk
 from saddlewalk.verdict import level_name, reason_name
 
@@ -58,7 +59,8 @@ def detection_of(walks: Iterable[Walk]) -> Detection:
         moving_levels=_total((walk.moving_levels for walk in walks), level_name),
         calm_falls=sum(walk.fell for walk in walks if walk.trial.impulse_n_s == 0),
         areas={
-            window: {name: _area(pushed, window, name) for name in MARGINS} for window in WINDOWS
+            window: {name: area(*evidence(pushed, window, name)) for name in MARGINS}
+            for window in WINDOWS
         },
     )
 
@@ -92,31 +94,11 @@ def push_limits(walks: Iterable[Walk]) -> dict[str, dict[int, float]]:
     }
 
 
-def roc(walks: Sequence[Walk], window: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """False-alarm and detection rates of pushed walks as the threshold of a margin rises."""
-    fell, least = _evidence(walks, window, name)
-    thresholds = np.unique(least)
-    below = least[None, :] <= thresholds[:, None]
-    false = below[:, ~fell].mean(axis=1) if (~fell).any() else np.zeros(len(thresholds))
-    true = below[:, fell].mean(axis=1) if fell.any() else np.zeros(len(thresholds))
-    return np.concatenate([[0.0], false]), np.concatenate([[0.0], true])
-
-
-def _area(walks: Sequence[Walk], window: str, name: str) -> float:
-    """Share of pairs of a fall and none in which the fall had less margin; a tie is half."""
-    fell, least = _evidence(walks, window, name)
-    if not fell.any() or fell.all():
-        return math.nan
-    below = least[fell][:, None] - least[~fell][None, :]
-    return float(((below < 0) + 0.5 * (below == 0)).mean())
-
-
-def _evidence(walks: Sequence[Walk], window: str, name: str) -> tuple[np.ndarray, np.ndarray]:
+def evidence(walks: Sequence[Walk], window: str, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Which walks ended in a fall, and their least margin; without those where it is unknown."""
     fell = np.array([walk.fell for walk in walks], dtype=bool)
     least = np.array([walk.least[window][name] for walk in walks])
-    known = np.isfinite(least)
-    return fell[known], least[known]
+    return known(fell, least)
 
 
 def _height(stair: list[Walk]) -> float:

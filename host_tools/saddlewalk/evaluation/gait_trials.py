@@ -11,24 +11,28 @@ import numpy as np
 
 from saddlewalk.core import Command, Core, Measurement, ffi, library
 from saddlewalk.errors import UserError
+from saddlewalk.evaluation.scoring import Levels, levels_in
 from saddlewalk.gait.events import Gait, analyse
 from saddlewalk.gait.playback import measurements, states_at_ticks
 from saddlewalk.gait.recording import Recording, load_recording
 from saddlewalk.ticks import Messages
 from saddlewalk.verdict import level_name, reason_name, ticks_in
 
+FIRST_S = 1.0  # of a recording, in which a level may still be unknown
 MANIFEST = "manifest.csv"  # beside the trials: file, height_m, mass_kg where they are known
 
 
 @dataclass(frozen=True)
 class GaitTrial:
-    """Ticks between the first heel strike and the last."""
+    """What was announced of a recording."""
 
     name: str
     height_m: float
     speed_m_s: float
-    levels: dict[str, int]
-    reasons: dict[str, int]  # of the ticks that are not stable
+    levels: dict[str, int]  # ticks between the first heel strike and the last
+    reasons: dict[str, int]  # of those that are not stable
+    settled: Levels  # of all ticks after the first FIRST_S
+    level_after_s: float  # from its begin to the first level that is known; inf: never
 
 
 def judge_folder(folder: Path, config: Any) -> list[GaitTrial]:
@@ -46,20 +50,22 @@ def judge_folder(folder: Path, config: Any) -> list[GaitTrial]:
 def judge(path: Path, config: Any) -> GaitTrial:
     recording = load_recording(str(path))
     gait = analyse(recording)
-    core, levels, reasons = Core(config), [], []
-    from_s, to_s = _walking(recording, gait)
+    core, ticks = Core(config), []
     for time_s, messages in measurements(states_at_ticks(recording, gait.contact)):
         verdict = core.tick(round(time_s * 1e6), Command(), _measurement(messages)).verdict
-        if from_s <= time_s <= to_s:
-            levels.append(level_name(verdict.level))
-            if verdict.level != library().SADDLE_LEVEL_STABLE:
-                reasons.append(reason_name(verdict.reason))
+        ticks.append((time_s, verdict.level, verdict.reason))
+    from_s, to_s = _walking(recording, gait)
+    walking = [said for time_s, *said in ticks if from_s <= time_s <= to_s]
+    settled = [said for time_s, *said in ticks if time_s > FIRST_S]
+    stable, unknown = library().SADDLE_LEVEL_STABLE, library().SADDLE_LEVEL_UNKNOWN
     return GaitTrial(
         name=path.stem,
         height_m=config.body_height_m,
         speed_m_s=gait.speed_m_s,
-        levels=ticks_in(levels),
-        reasons=dict(Counter(reasons)),
+        levels=ticks_in(level_name(level) for level, _ in walking),
+        reasons=dict(Counter(reason_name(why) for level, why in walking if level != stable)),
+        settled=levels_in(settled),
+        level_after_s=next((time_s for time_s, level, _ in ticks if level != unknown), math.inf),
     )
 
 

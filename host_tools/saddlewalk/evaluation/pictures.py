@@ -10,8 +10,9 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from saddlewalk.evaluation.detection import roc
+from saddlewalk.evaluation.detection import evidence
 from saddlewalk.evaluation.region import CLAIMS, EXTENT, POSTURES, explore, plane
+from saddlewalk.evaluation.scoring import roc
 from saddlewalk.evaluation.walks import KINDS, MARGINS, WINDOWS, Walk
 from saddlewalk.pictures.walk import BLUE, GREEN, ORANGE, PINK, RED, SKY
 
@@ -38,7 +39,7 @@ def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
         of_kind = [walk for walk in walks if walk.trial.kind == kind and walk.trial.impulse_n_s > 0]
         for axes, window in zip(row, windows, strict=True):
             for index, name in enumerate(MARGINS):
-                false, true = roc(of_kind, window, name)
+                false, true = roc(*evidence(of_kind, window, name))
                 style = {"color": COLOURS[index % 8], "ls": DASHES[index // 8]}
                 axes.plot(np.append(false, 1.0), np.append(true, 1.0), label=name, **style)
             axes.plot([0, 1], [0, 1], color="0.8", lw=0.8)

@@ -18,7 +18,9 @@ import numpy as np
 from saddlewalk.core import ffi, library
 from saddlewalk.emulation import closed_loop
 from saddlewalk.emulation.wearer import STANDING, WALKING, Body, Push, Wearer
-from saddlewalk.evaluation.baselines import hof_margin_m, hull_margin_m
+from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_margin_m
+from saddlewalk.evaluation.emulated import Witness
+from saddlewalk.evaluation.scoring import Score
 from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.ticks import TICK_S
 
@@ -87,6 +89,15 @@ class Trial:
 
 
 @dataclass(frozen=True)
+class Course:
+    """How a walk went, up to the fall or the end."""
+
+    ticks: np.ndarray  # of TICK
+    fell_at_s: float  # NaN: did not
+    scores: dict[str, list[Score]]  # by INPUTS
+
+
+@dataclass(frozen=True)
 class Walk:
     """A trial and what came of it. Times in s from the start; NaN: did not happen."""
 
@@ -97,6 +108,7 @@ class Walk:
     walking_levels: dict[int, int]  # ticks of steady walking before a push, by saddle_level_t
     walking_reasons: dict[int, int]  # and by saddle_reason_t
     moving_levels: dict[int, int]  # starts and stops included
+    scores: dict[str, list[Score]]  # by INPUTS, as every walker is scored
 
     @property
     def fell(self) -> bool:
@@ -119,8 +131,8 @@ class Walk:
         }
 
 
-def ticks_of(seed: int, index: int, kind: str, config: Any) -> tuple[Trial, np.ndarray, float]:
-    """The pushed walk `index`, every tick of TICK, and when the wearer fell (NaN: did not)."""
+def course_of(seed: int, index: int, kind: str, config: Any) -> tuple[Trial, Course]:
+    """The pushed walk `index` and how it went."""
     chain = next(chain for chain in _chains(index + 1) if index in chain)
     *_, last = _walk_chain(seed, chain, kind, config)
     return last
@@ -160,8 +172,7 @@ def _work(seed: int, chain: list[int], kind: str, image: bytes) -> list[Walk]:
     return [judge(*walk) for walk in _walk_chain(seed, chain, kind, config)]
 
 
-def run(trial: Trial, config: Any) -> tuple[np.ndarray, float]:
-    """All ticks of a walk, of TICK, up to the fall or the end; and when the wearer fell."""
+def run(trial: Trial, config: Any) -> Course:
     pushed = trial.impulse_n_s > 0
     push = Push(trial.impulse_n_s, trial.push_time_s, trial.direction_deg)
     wearer = Wearer(
@@ -172,17 +183,26 @@ def run(trial: Trial, config: Any) -> tuple[np.ndarray, float]:
     )
     stop = [] if pushed else [(STOP_S, 0.0)]
     speeds = [(0.0, 0.0), (START_S, trial.speed_m_s), *stop]
+    schedule = schedule_of(speeds, HEEL_STRIKE_RAD)
     end_s = trial.push_time_s + OBSERVED_S if pushed else CALM_S
-    rows = []
-    for tick in closed_loop.walk(config, wearer, schedule_of(speeds, HEEL_STRIKE_RAD)):
-        if tick.time_s >= end_s:
-            break
-        if wearer.fallen:
+    rows, witness = [], Witness(config, schedule)
+    for tick in closed_loop.walk(config, wearer, schedule):
+        if tick.time_s >= end_s or wearer.fallen:
             break
         rows.append(_row(tick, wearer))
+        witness.see(tick, wearer)
     ticks = np.array(rows, dtype=TICK)
     _add_baselines(ticks, config)
-    return ticks, wearer.fell_at_s
+    scores = witness.scores(
+        _scored_kind(trial), trial.push_time_s if pushed else math.nan, wearer.fell_at_s
+    )
+    return Course(ticks, wearer.fell_at_s, scores)
+
+
+def _scored_kind(trial: Trial) -> str:
+    if trial.impulse_n_s == 0:
+        return "start_stop"
+    return "random" if trial.cell < 0 else "staircase"
 
 
 def _row(tick: closed_loop.Tick, wearer: Wearer) -> tuple[float, ...]:
@@ -228,12 +248,14 @@ def _add_baselines(ticks: np.ndarray, config: Any) -> None:
     velocity_m_s = np.stack([ticks["com_vx_m_s"], ticks["com_vy_m_s"]], 1)
     contact = np.stack([ticks["left_contact"], ticks["right_contact"]], 1) > 0
     xcom_m = velocity_m_s / body.natural_frequency_rad_s
-    ticks["hull_com_m"] = hull_margin_m(np.zeros_like(xcom_m), cop_m, body.height_m)
-    ticks["hof_xcom_m"] = hof_margin_m(xcom_m, cop_m, contact, body.height_m)
+    half_m = half_foot_m(body.height_m)
+    ticks["hull_com_m"] = hull_margin_m(np.zeros_like(xcom_m), cop_m, half_m)
+    ticks["hof_xcom_m"] = hof_margin_m(xcom_m, cop_m, contact, half_m)
 
 
-def judge(trial: Trial, ticks: np.ndarray, fell_at_s: float) -> Walk:
+def judge(trial: Trial, course: Course) -> Walk:
     """What a walk tells."""
+    ticks, fell_at_s = course.ticks, course.fell_at_s
     time_s, level = ticks["time_s"], ticks["level"]
     pushed = np.full(len(ticks), trial.impulse_n_s > 0) & (time_s >= trial.push_time_s)
     alarms = time_s[pushed & (level == library().SADDLE_LEVEL_UNSTABLE)]
@@ -252,6 +274,7 @@ def judge(trial: Trial, ticks: np.ndarray, fell_at_s: float) -> Walk:
         walking_levels=_counts(level[walking]),
         walking_reasons=_counts(ticks["reason"][walking]),
         moving_levels=_counts(level[moving]),
+        scores=course.scores,
     )
 
 
@@ -276,15 +299,15 @@ def _chains(walks: int) -> list[list[int]]:
 
 def _walk_chain(
     seed: int, chain: list[int], kind: str, config: Any
-) -> Iterator[tuple[Trial, np.ndarray, float]]:
+) -> Iterator[tuple[Trial, Course]]:
     stair_n_s, factor, fell_before = FIRST_PUSH_M_S * config.body_mass_kg, STAIR, None
     for index in chain:
         trial = draw(seed, index, kind, config.body_mass_kg)
         if trial.cell >= 0:
             trial = replace(trial, impulse_n_s=stair_n_s)
-        ticks, fell_at_s = run(trial, config)
-        yield trial, ticks, fell_at_s
-        fell = math.isfinite(fell_at_s)
+        course = run(trial, config)
+        yield trial, course
+        fell = math.isfinite(course.fell_at_s)
         factor = FINE_STAIR if fell_before not in (None, fell) else factor
         stair_n_s *= 1 / factor if fell else factor
         fell_before = fell

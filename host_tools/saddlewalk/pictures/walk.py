@@ -79,7 +79,7 @@ def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push], config: An
     for axes in (speed, height, scores, margins):
         _mark(axes, pushes)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    _draw_level(level, walk)
+    draw_level(level, walk)
     _mark(level, pushes)
     figure.savefig(png_path)
 
@@ -194,7 +194,7 @@ def _draw_lines(
             axes.fill_between([], [], color=shade, label=MODES[mode])
 
 
-def _draw_level(axes: Axes, walk: Columns) -> None:
+def draw_level(axes: Axes, walk: Columns) -> None:
     """A lane for each level, filled while it was announced."""
     for lane, (name, style) in enumerate(LANES.items()):
         there = walk["level"] == LEVELS.index(name)
