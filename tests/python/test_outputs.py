@@ -18,6 +18,7 @@ from host_node import own_lcm
 from saddlewalk import atomic_write
 from saddlewalk.cli import main, parser
 from saddlewalk.transport.bus import private_udp
+from synthetic_falls import write_folder
 from synthetic_walk import Walk, csv_text
 
 CHECKOUT = Path(__file__).parents[2]
@@ -54,6 +55,8 @@ WRITERS = [
     Writer("calibrate {walk} {other}", "--header", "person.h"),
     Writer("bench --rounds 1", "--json", "bench.json"),
     Writer("evaluate --walks 1 --jobs 2 --gait {gait}", "--out", "found", ("evaluation.json",)),
+    Writer("evaluate --falls {falls} --config {toml}", "--out", "found", ("scores.json",)),
+    Writer("evaluate --falls {falls} --config {toml}", "--json", "scores.json"),
     Writer("reproduce --gait {gait}", "--out", "paper", ("paper.html", "steps.png")),
     Writer("report {log}", "--out", "page.html"),
     Writer("export {log} --format mcap", "--out", "log.mcap"),
@@ -84,6 +87,7 @@ def inputs(walk, tmp_path_factory) -> dict[str, Path]:
         "walk": folder / "walk.csv",
         "other": folder / "other.csv",
         "gait": folder / "gait",
+        "falls": write_folder(folder / "falls"),
         "toml": folder / "person.toml",
         "schedule": folder / "schedule.csv",
         "states": states,
@@ -154,6 +158,11 @@ def inputs_of(writer: Writer) -> list[str]:
     return re.findall(r"{(\w+)}", writer.words)
 
 
+def file_of(path: Path) -> Path:
+    """An input, or one of the files in a folder that is an input."""
+    return min(each for each in path.iterdir() if each.is_file()) if path.is_dir() else path
+
+
 def other_names(target: Path, folder: Path, suffix: str) -> list[Path]:
     """Paths and links to a file; links alone where the suffix would be refused."""
     symbolic, hard = folder / f"symbolic{suffix}", folder / f"hard{suffix}"
@@ -171,7 +180,7 @@ def test_an_output_that_is_an_input_is_refused(writer, mine, tmp_path, refused):
     for name in inputs_of(writer):
         folder = tmp_path / name
         folder.mkdir()
-        for out in other_names(mine[name], folder, Path(writer.out).suffix):
+        for out in other_names(file_of(mine[name]), folder, Path(writer.out).suffix):
             assert "is the same file as" in refused(writer, mine, out)
     assert contents(tmp_path / "inputs") == before
 
@@ -182,8 +191,7 @@ def test_a_folder_that_would_lose_an_input_is_refused(writer, mine, tmp_path, re
     for name in inputs_of(writer):
         folder = tmp_path / name
         folder.mkdir()
-        source = mine[name] / "somebody.csv" if mine[name].is_dir() else mine[name]
-        (folder / writer.holds[0]).hardlink_to(source)
+        (folder / writer.holds[0]).hardlink_to(file_of(mine[name]))
         assert "is the same file as" in refused(writer, mine, folder)
     if "{gait}" in writer.words:
         assert "is the same file as --gait" in refused(writer, mine, mine["gait"])
