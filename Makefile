@@ -3,13 +3,17 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo controller test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets samples neighbours format clean help
+.PHONY: build demo amalgamation controller test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets samples neighbours format clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
 
 demo: build ## one walk, end to end: live in the terminal, results in out/demo
 	@$(BIN)/saddlewalk demo --out out/demo
+
+amalgamation: ## the core as one file to add to any build, build/saddlewalk.c
+	@mkdir -p build
+	@$(PYTHON) tools/amalgamate.py build/saddlewalk.c
 
 controller: build-cortex-m4f/build.ninja ## the image for saddlewalk demo --firmware qemu-m4
 	@$(BIN)/ninja -C build-cortex-m4f --quiet saddlewalk-controller

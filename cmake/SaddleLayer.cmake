@@ -1,42 +1,62 @@
-# saddle_layer(NAME [HEADERS h...] [SOURCES c...] [USES layer...])
+# saddle_public(NAME HEADER...)
 #
-# One layer of the core. Its sources see their own headers and those of the layers that they USE,
-# and no others: the public headers lie side by side in one folder, so each layer has a folder of
-# links to its own, and only the folders of NAME and USES are on the include path. USES is not
-# transitive, and a layer must be declared before it is used: arrows point down.
+# Headers of include/saddlewalk that a layer may use by that name.
 #
-# The layers' objects are collected in the global property SADDLE_CORE_OBJECTS, their headers in
-# SADDLE_CORE_HEADERS.
+# saddle_layer(ROOM/NAME [USES layer...])
+#
+# One layer of the core: src/ROOM/NAME.h and, if there is one, src/ROOM/NAME.c. It sees its own header
+# and those of the layers that it USES, and no others: each layer has a folder of links to its
+# headers, and only the folders of NAME and USES are on the include path. USES is not transitive, and
+# a layer must be declared before it is used: arrows point down.
+#
+# The layers' objects are collected in the global property SADDLE_CORE_OBJECTS, the public headers in
+# SADDLE_CORE_HEADERS, and the layers' names, from the lowest up, in SADDLE_CORE_LAYERS.
 include_guard(GLOBAL)
 include(${CMAKE_CURRENT_LIST_DIR}/SaddleStrict.cmake)
 
-function(saddle_layer name)
-    cmake_parse_arguments(PARSE_ARGV 1 LAYER "" "" "HEADERS;SOURCES;USES")
-    set(public ${CMAKE_CURRENT_SOURCE_DIR}/include)
+# A folder of links to the headers in FROM, and a target that has it on the include path.
+function(saddle_view name from)
+    string(REPLACE "/" "_" target saddle_view_${name})
     set(view ${CMAKE_CURRENT_BINARY_DIR}/layers/${name})
-
     file(REMOVE_RECURSE ${view})
-    file(MAKE_DIRECTORY ${view}/saddlewalk)
-    foreach(header IN LISTS LAYER_HEADERS)
-        file(CREATE_LINK ${public}/saddlewalk/${header} ${view}/saddlewalk/${header} SYMBOLIC)
-        set_property(GLOBAL APPEND PROPERTY SADDLE_CORE_HEADERS ${public}/saddlewalk/${header})
+    foreach(header IN LISTS ARGN)
+        cmake_path(GET header PARENT_PATH folder)
+        file(MAKE_DIRECTORY ${view}/${folder})
+        file(CREATE_LINK ${from}/${header} ${view}/${header} SYMBOLIC)
     endforeach()
-    add_library(saddle_view_${name} INTERFACE)
-    target_include_directories(saddle_view_${name} INTERFACE ${view})
+    add_library(${target} INTERFACE)
+    target_include_directories(${target} INTERFACE ${view})
+endfunction()
 
-    if(LAYER_SOURCES)
-        add_library(saddle_layer_${name} OBJECT)
-        list(TRANSFORM LAYER_SOURCES PREPEND src/)
-        target_sources(saddle_layer_${name} PRIVATE ${LAYER_SOURCES})
-        set_target_properties(saddle_layer_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-        target_link_libraries(saddle_layer_${name} PRIVATE saddle_strict saddle_same_bits)
-        foreach(seen IN ITEMS ${name} LISTS LAYER_USES)
-            if(NOT TARGET saddle_view_${seen})
-                message(FATAL_ERROR "layer ${name} uses ${seen}, which is not below it")
-            endif()
-            target_link_libraries(saddle_layer_${name} PRIVATE saddle_view_${seen})
-        endforeach()
-        set_property(GLOBAL APPEND PROPERTY SADDLE_CORE_OBJECTS
-                     $<TARGET_OBJECTS:saddle_layer_${name}>)
+function(saddle_public name)
+    set(from ${CMAKE_CURRENT_SOURCE_DIR}/include)
+    list(TRANSFORM ARGN PREPEND saddlewalk/)
+    saddle_view(${name} ${from} ${ARGN})
+    list(TRANSFORM ARGN PREPEND ${from}/)
+    set_property(GLOBAL APPEND PROPERTY SADDLE_CORE_HEADERS ${ARGN})
+endfunction()
+
+function(saddle_layer name)
+    cmake_parse_arguments(PARSE_ARGV 1 LAYER "" "" "USES")
+    set(from ${CMAKE_CURRENT_SOURCE_DIR}/src)
+    if(EXISTS ${from}/${name}.h)
+        saddle_view(${name} ${from} ${name}.h)
+        list(PREPEND LAYER_USES ${name})
     endif()
+    set_property(GLOBAL APPEND PROPERTY SADDLE_CORE_LAYERS ${name})
+    if(NOT EXISTS ${from}/${name}.c)
+        return()
+    endif()
+    string(REPLACE "/" "_" target saddle_layer_${name})
+    add_library(${target} OBJECT src/${name}.c)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_link_libraries(${target} PRIVATE saddle_strict saddle_same_bits)
+    foreach(used IN LISTS LAYER_USES)
+        string(REPLACE "/" "_" view saddle_view_${used})
+        if(NOT TARGET ${view})
+            message(FATAL_ERROR "layer ${name} uses ${used}, which is not below it")
+        endif()
+        target_link_libraries(${target} PRIVATE ${view})
+    endforeach()
+    set_property(GLOBAL APPEND PROPERTY SADDLE_CORE_OBJECTS $<TARGET_OBJECTS:${target}>)
 endfunction()

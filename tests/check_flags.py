@@ -24,7 +24,7 @@ def main() -> None:
         for entry in json.loads(Path(sys.argv[1]).read_text())
         if "saddle_layer_" in entry["command"]  # tests compile the sources in ways of their own
     }
-    sources = sorted(Path(sys.argv[2]).resolve().glob("*.c"))
+    sources = sorted(Path(sys.argv[2]).resolve().rglob("*.c"))
     if not sources:
         sys.exit(f"{sys.argv[2]} has no sources")
     found = [f"{file.name} {what}" for file in sources for what in complaints(commands[file])]

@@ -10,6 +10,9 @@ import shutil
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parent))
+from amalgamate import amalgamation
+
 CHECKOUT = Path(__file__).resolve().parents[1]
 CORE = CHECKOUT / "firmware/core"
 PORT = CHECKOUT / "firmware/port_arduino"
@@ -29,7 +32,7 @@ def arduino(folder: Path) -> None:
     """Everything that Arduino compiles and includes lies in src; it knows no include folder."""
     shutil.copytree(PORT, folder, ignore=shutil.ignore_patterns("*.in"))
     shutil.copytree(CORE / "include/saddlewalk", folder / "src/saddlewalk")
-    shutil.copytree(CORE / "src", folder / "src/core")
+    (folder / "src/saddlewalk.c").write_text(amalgamation())
     shutil.copy(CHECKOUT / "LICENSE", folder)
     properties = (PORT / "library.properties.in").read_text().replace("@version@", version())
     (folder / "library.properties").write_text(properties)

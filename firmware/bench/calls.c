@@ -3,7 +3,7 @@
 #include "floor.h"
 #include "walks.h"
 
-#include <saddlewalk/saddle_math.h>
+#include "math/elementary.h"
 #include <stdio.h>
 
 static bool telling;

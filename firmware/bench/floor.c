@@ -1,7 +1,7 @@
 #include "floor.h"
 
 #include <math.h>
-#include <saddlewalk/saddle_math.h>
+#include "math/elementary.h"
 
 static float sin_and_cos(float x_rad)
 {

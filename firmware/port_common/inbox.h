@@ -3,7 +3,7 @@
  * what was refused and why. Knows no bus and reads no clock.
  *
  * One source of commands has authority at a time. The commands of the other are counted, not
- * obeyed, even when the first falls silent: the plan then stops the walk (safe_state.h).
+ * obeyed, even when the first falls silent: the plan then stops the walk.
  */
 #ifndef SADDLEWALK_PORT_INBOX_H
 #define SADDLEWALK_PORT_INBOX_H

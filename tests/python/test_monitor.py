@@ -316,7 +316,7 @@ def test_lcm_has_the_same_levels_and_reasons():
 
 
 def test_the_longest_time_is_that_of_the_core():
-    header = paths.CHECKOUT / "firmware/core/include/saddlewalk/speed_profile.h"
+    header = paths.CHECKOUT / "firmware/core/include/saddlewalk/types.h"
     (defined,) = re.findall(r"#define SADDLE_TIME_MAX_S (\S+)f", header.read_text())
     assert float(defined) == core.TIME_MAX_S
 

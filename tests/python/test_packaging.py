@@ -70,7 +70,9 @@ def walk(tmp_path_factory) -> str:
     program = tmp_path_factory.mktemp("plain") / "walk"
     flags = ["-Ifirmware/core/include", "-ffp-contract=off"]
     assert f"with `{' '.join(flags)}`" in (CHECKOUT / "README.md").read_text()
-    compile_c(program, f"-I{CORE / 'include'}", flags[1], PROGRAM, *(CORE / "src").glob("*.c"))
+    one_file = program.with_suffix(".c")
+    run(CHECKOUT / "tools/amalgamate.py", one_file)
+    compile_c(program, f"-I{CORE / 'include'}", flags[1], PROGRAM, one_file)
     printed = run(program).stdout
     assert printed.count("\n") == 50
     return printed
@@ -182,8 +184,9 @@ def test_platformio_manifest_is_in_step_and_builds(walk, tmp_path):
     assert all((CHECKOUT / path).exists() for path in manifest["export"]["include"])
     build = manifest["build"]
     include = f"-I{CHECKOUT / build['includeDir']}"
-    sources = sorted((CHECKOUT / build["srcDir"]).glob("*.c"))
-    compile_c(tmp_path / "walk", *build["flags"], include, PROGRAM, *sources)
+    flags = [flag.replace("-I", f"-I{CHECKOUT}/") for flag in build["flags"]]
+    sources = sorted((CHECKOUT / build["srcDir"]).rglob("*.c"))
+    compile_c(tmp_path / "walk", *flags, include, PROGRAM, *sources)
     assert run(tmp_path / "walk").stdout == walk
 
 
@@ -207,7 +210,7 @@ def test_zephyr_option_is_off_until_asked_for_and_then_wants_the_fpu(has_fpu, tm
 
 
 CHECK = """
-#include <saddlewalk/rounding.h>
+#include "math/rounding.h"
 int main(void) { return saddle_rounds_as_written() ? 0 : 6; }
 """
 INIT = """
@@ -224,7 +227,14 @@ int main(void)
 def outcome(tmp_path: Path, program: str, sources: list[Path], *flags: str) -> int | str:
     """The program's exit status, or what the compiler said."""
     (tmp_path / "main.c").write_text(program)
-    arguments = [f"-I{CORE / 'include'}", "-O2", *flags, tmp_path / "main.c", *sources]
+    arguments = [
+        f"-I{CORE / 'include'}",
+        f"-I{CORE / 'src'}",
+        "-O2",
+        *flags,
+        tmp_path / "main.c",
+        *sources,
+    ]
     compiled = compile_c(tmp_path / "main", *arguments, check=False)
     return compiled.stderr or run(tmp_path / "main", check=False).returncode
 
@@ -244,7 +254,9 @@ def outcome(tmp_path: Path, program: str, sources: list[Path], *flags: str) -> i
     ],
 )
 def test_flags_that_change_results_are_refused(flags, tmp_path):
-    got = outcome(tmp_path, CHECK, [CORE / "src/rounding.c"], "-ffp-contract=off", *flags.split())
+    got = outcome(
+        tmp_path, CHECK, [CORE / "src/math/rounding.c"], "-ffp-contract=off", *flags.split()
+    )
     assert got == ERROR_BUILD or re.search("error: .*Saddlewalk: ", str(got))
 
 
@@ -252,5 +264,5 @@ def test_a_contracted_multiply_add_is_refused_by_init(tmp_path):
     fused = ["-mfma"] if platform.machine() == "x86_64" else []
     if fused and " fma " not in Path("/proc/cpuinfo").read_text():
         pytest.skip("this processor has no fused multiply-add")
-    sources = list((CORE / "src").glob("*.c"))
+    sources = list((CORE / "src").rglob("*.c"))
     assert outcome(tmp_path, INIT, sources, *fused, "-ffp-contract=fast") == ERROR_BUILD

@@ -3,7 +3,8 @@
 #include "../unit/output_fields.h"
 #include "sequences.h"
 
-#include <saddlewalk/saddle_math.h>
+#include "math/elementary.h"
+
 #include <stdio.h>
 #include <string.h>
 

@@ -5,6 +5,8 @@
 #ifndef SADDLEWALK_CORE_TEST_H
 #define SADDLEWALK_CORE_TEST_H
 
+#include "model/model.h"
+
 #include <math.h>
 #include <saddlewalk/saddlewalk.h>
 #include <string.h>

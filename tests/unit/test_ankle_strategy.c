@@ -1,8 +1,9 @@
 /** Toe-off and heel strike: the model page's angles, eq:05 to eq:08 in double, rates by difference. */
 #include "core_test.h"
 
-#include <saddlewalk/ankle_strategy.h>
-#include <saddlewalk/saddle_math.h>
+#include "math/elementary.h"
+#include "model/gait_model.h"
+#include "motion/ankle_strategy.h"
 
 #define DEGREE (PI / 180.0)
 

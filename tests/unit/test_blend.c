@@ -1,7 +1,7 @@
 /** The fading mismatch: value and slope continuous at both ends, slope the derivative between. */
 #include "core_test.h"
 
-#include <saddlewalk/blend.h>
+#include "math/blend.h"
 
 void setUp(void) {}
 

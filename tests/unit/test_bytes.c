@@ -1,7 +1,7 @@
 /** Clearing and copying bytes. */
 #include "core_test.h"
 
-#include <saddlewalk/bytes.h>
+#include "math/bytes.h"
 
 #define SIZE 64
 

@@ -1,7 +1,8 @@
 /** The CoM in the transverse plane against eq:01 and its derivative in double precision. */
 #include "core_test.h"
 
-#include <saddlewalk/com_path.h>
+#include "model/gait_model.h"
+#include "motion/com_path.h"
 
 static saddle_config_t config;
 

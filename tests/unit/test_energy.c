@@ -1,7 +1,8 @@
 /** The energy that stopping or returning to the plan has to absorb, against the formulas. */
 #include "balance_twin.h"
 
-#include <saddlewalk/energy.h>
+#include "balance/energy.h"
+#include "balance/saddle_space.h"
 
 /* Joules: m g z is 630 J, rounded to 6e-5 J, a few times over. */
 static const double ENERGY_TOLERANCE = 5e-4;

@@ -2,8 +2,9 @@
  *  plan; and how a deviation from it grows. */
 #include "balance_twin.h"
 
-#include <saddlewalk/vec2.h>
-#include <saddlewalk/expected_step.h>
+#include "balance/energy.h"
+#include "balance/expected_step.h"
+#include "math/vec2.h"
 
 static const float SPEEDS[] = {0.3f, 0.5f, 0.7f, 1.0f, 1.2f, 1.6f, 1.9f};
 

@@ -1,7 +1,7 @@
 /** The swing foot: on the line through stance CoP and CoM, fading in from where it lifted off. */
 #include "core_test.h"
 
-#include <saddlewalk/foot_swing.h>
+#include "motion/foot_swing.h"
 
 static saddle_swing_t swing;
 

@@ -1,8 +1,11 @@
 /** The gait cycle by itself: where it begins, its via points, half swings, landings refused. */
 #include "core_test.h"
 
+#include "math/fixed.h"
+#include "model/gait_model.h"
+#include "motion/gait_cycle.h"
+
 #include <fenv.h>
-#include <saddlewalk/gait_cycle.h>
 
 static saddle_config_t config;
 static saddle_body_t body;

@@ -1,7 +1,8 @@
 /** Regressions, amplitudes and limits against the model page's numbers. */
 #include "core_test.h"
 
-#include <saddlewalk/gait_model.h>
+#include "math/fixed.h"
+#include "model/gait_model.h"
 
 static saddle_config_t config;
 static saddle_body_t body;

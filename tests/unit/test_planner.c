@@ -1,7 +1,7 @@
 /** The plan against eq:01 to eq:08 as functions of time, in double; start, stop, feet, events. */
 #include "core_test.h"
 
-#include <saddlewalk/planner.h>
+#include "motion/planner.h"
 
 /* Metres, rad, m/s: floats of order 1 in a chain of ten operations. */
 static const double TOLERANCE = 5e-6;

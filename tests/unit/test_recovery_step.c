@@ -2,8 +2,9 @@
  *  CoP can mend until then. */
 #include "balance_twin.h"
 
-#include <saddlewalk/vec2.h>
-#include <saddlewalk/recovery_step.h>
+#include "balance/expected_step.h"
+#include "balance/recovery_step.h"
+#include "math/vec2.h"
 
 #define STEP_TIME_S 0.55f
 

@@ -2,8 +2,9 @@
  *  tests/python/test_packaging.py. */
 #include "core_test.h"
 
+#include "math/rounding.h"
+
 #include <fenv.h>
-#include <saddlewalk/rounding.h>
 
 void setUp(void) {}
 

@@ -2,7 +2,7 @@
  *  force in double. */
 #include "core_test.h"
 
-#include <saddlewalk/saddle_space.h>
+#include "balance/saddle_space.h"
 
 #define HALF_DEPTH_M 0.1f
 

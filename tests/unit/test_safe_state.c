@@ -1,7 +1,7 @@
 /** When lost inputs stop the walk, and when it may go on. */
 #include "core_test.h"
 
-#include <saddlewalk/safe_state.h>
+#include "sense/safe_state.h"
 
 static const float DT_S = 0.08f;
 

@@ -1,7 +1,8 @@
 /** Motion along x against its closed forms in double. */
 #include "core_test.h"
 
-#include <saddlewalk/speed_profile.h>
+#include "math/fixed.h"
+#include "motion/speed_profile.h"
 
 static const double UNITS = 4398046511104.0;
 

@@ -1,7 +1,7 @@
 /** XCoM and the scores: 1 on the reference, 0 on the bound, straight in between. */
 #include "core_test.h"
 
-#include <saddlewalk/stability_scores.h>
+#include "balance/stability_scores.h"
 
 void setUp(void) {}
 

@@ -1,7 +1,7 @@
 /** How steps are followed: heel strikes, v_CoMp, half steps, the stance foot, standing. */
 #include "core_test.h"
 
-#include <saddlewalk/step_tracker.h>
+#include "sense/step_tracker.h"
 
 static const float DT_S = 0.08f;
 

@@ -1,7 +1,11 @@
 /** The supervisor's scores: what is scored of which input, and the paper's verdict on it. */
 #include "balance_twin.h"
 
-#include <saddlewalk/supervisor.h>
+#include "balance/comparison.h"
+#include "balance/saddle_space.h"
+#include "balance/scores.h"
+#include "balance/supervisor.h"
+#include "sense/plausibility.h"
 
 #define PLANNED_M_S 1.2f
 
@@ -9,6 +13,7 @@ static const float DT_S = 0.08f;
 
 static saddle_config_t config;
 static saddle_body_t body;
+static saddle_plausibility_t plausibility;
 static saddle_supervisor_t supervisor;
 static saddle_measurement_t measured;
 static saddle_scores_t scores;
@@ -63,8 +68,8 @@ static uint32_t update_with(uint32_t faults)
 /* Each measurement by itself: none is frozen. */
 static uint32_t update(void)
 {
-    memset(&supervisor.watch, 0, sizeof supervisor.watch);
-    return update_with(saddle_judge(&supervisor.watch, model_of(&config), &measured, 0.0f, DT_S));
+    memset(&plausibility, 0, sizeof plausibility);
+    return update_with(saddle_measurement_check(&plausibility, model_of(&config), &measured, 0.0f, DT_S));
 }
 
 static const uint32_t UNTIL_STEP = (uint32_t)SADDLE_VALID_ALL & ~(uint32_t)SADDLE_VALID_STEP;

@@ -2,8 +2,10 @@
  *  numbers against the model in double, each level and reason, and when it is announced. */
 #include "balance_twin.h"
 
-#include <saddlewalk/vec2.h>
-#include <saddlewalk/supervisor.h>
+#include "balance/comparison.h"
+#include "balance/recovery_step.h"
+#include "balance/supervisor.h"
+#include "math/vec2.h"
 
 static const float DT_S = 0.08f;
 

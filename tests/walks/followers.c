@@ -2,6 +2,8 @@
  * supervisor believes them, always knows a step for them and never calls them unstable. */
 #include "walks.h"
 
+#include "model/model.h"
+
 #define FOLLOWERS 5000
 #define SCHEDULE_US 30000000u
 #define SETTLED_US 1000000u

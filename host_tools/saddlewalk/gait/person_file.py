@@ -28,7 +28,7 @@ def header_text(fits: Sequence[Fit], sources: Sequence[str], path: str) -> str:
             f"#ifndef SADDLE_CONFIG_{stem.upper()}_H",
             f"#define SADDLE_CONFIG_{stem.upper()}_H",
             "",
-            "#include <saddlewalk/config.h>",
+            "#include <saddlewalk/saddlewalk.h>",
             "",
             f"static inline saddle_config_t saddle_config_{stem}(void)",
             "{",

@@ -19,62 +19,30 @@
 extern "C" {
 #endif
 
-#include <saddlewalk/config.h>
-#include <saddlewalk/gait_model.h>
-#include <saddlewalk/measurement.h>
-#include <saddlewalk/model.h>
-#include <saddlewalk/planner.h>
-#include <saddlewalk/safe_state.h>
-#include <saddlewalk/saddle_space.h>
-#include <saddlewalk/supervisor.h>
+#include <saddlewalk/private/context.h>
+#include <saddlewalk/types.h>
 #include <saddlewalk/version.h>
 
-/** Did the call work? What the answer is worth is told by plan.valid and scores.valid. */
-typedef enum {
-    SADDLE_OK = 0,
-    SADDLE_ERROR_NULL = 1,          /**< an argument is NULL */
-    SADDLE_ERROR_CONFIG = 2,        /**< saddle_config_check() names the field */
-    SADDLE_ERROR_UNINITIALISED = 3, /**< saddle_init() has not succeeded on this context */
-    SADDLE_ERROR_TIME = 4,          /**< time_us went backwards: no plan, no scores, state kept,
-                                         until it has caught up or saddle_init() starts over */
-    SADDLE_ERROR_COMMAND = 5,       /**< saddle_join() needs a walk with a speed > 0 */
-    SADDLE_ERROR_BUILD = 6          /**< the core's flags, or the processor's rounding mode, break
-                                         its bits; docs/porting.md names those to use */
-} saddle_status_t;
+/** The paper's parameters for a body. The arguments are judged by saddle_config_check(). */
+saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg);
 
-typedef struct {
-    uint64_t time_us; /**< the caller's monotonic clock, any origin */
-    saddle_command_t command;
-    uint32_t command_age_us; /**< since the command was last confirmed */
-    saddle_measurement_t measurement;
-} saddle_input_t;
+/** Name of the first field that is not finite, out of range or at odds with the others;
+ *  NULL when the configuration can be used. The text is constant and never freed.
+ *  config must not be NULL. */
+const char *saddle_config_check(const saddle_config_t *config);
 
-/** status: did the call work; limits: what clamped the plan; faults: which inputs were not used. */
-typedef struct {
-    saddle_status_t status;
-    uint32_t limits; /**< saddle_limit_t bits */
-    uint32_t faults; /**< saddle_fault_t bits */
-    saddle_plan_t plan;
-    saddle_scores_t scores;   /**< of the measured posture, in the frame of the CoM */
-    saddle_verdict_t verdict; /**< the measured posture against the plan */
-} saddle_output_t;
-
-/** Caller-owned state; treat the fields as private. */
-typedef struct {
-    uint64_t last_time_us;
-    uint32_t initialised;
-    saddle_model_t model;
-    saddle_planner_t planner;
-    saddle_supervisor_t supervisor;
-    saddle_safe_state_t safe_state;
-    saddle_command_t command; /**< the last usable one */
-    uint32_t command_age_us;
-    bool ticked;
-} saddle_context_t;
+/** The float field at an index, NULL past the last. For hosts that set fields by name. */
+const saddle_config_field_t *saddle_config_field(size_t index);
 
 /** Copy and check the configuration and reset the context. On an error the context stays
  *  uninitialised and every tick on it says so. May be called again at any time. */
 saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *config);
+
+/** That nothing was ever measured: for a plan without a wearer. */
+saddle_measurement_t saddle_no_measurement(void);
+
+/** True for a stand, whatever its numbers, and for a walk with numbers within +-10^6. */
+bool saddle_command_usable(const saddle_command_t *command);
 
 /** One update. Writes all of *output on every path, unless output is NULL; on an error (its return
  *  value, also in output->status) nothing in it is valid. For the first tick after saddle_init() no
@@ -97,6 +65,10 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
  *  measured score is read against. Of a plan that is not valid nothing is scored. */
 saddle_status_t saddle_score_plan(const saddle_context_t *context, const saddle_plan_t *plan,
                                   saddle_scores_t *scores);
+
+/** For display: a convex polygon inscribed in the BoS, counter-clockwise, every vertex on the
+ *  border. Zeros if the BoS is undefined. */
+void saddle_bos_polygon(const saddle_bos_t *bos, saddle_vec2_t vertices_m[SADDLE_BOS_VERTICES]);
 
 #ifdef __cplusplus
 }

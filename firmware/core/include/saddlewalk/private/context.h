@@ -1,0 +1,194 @@
+/** What a context consists of, so that its owner can reserve it. Private: no field is part of the
+ *  interface, and each belongs to the module whose functions change it. */
+#ifndef SADDLEWALK_PRIVATE_CONTEXT_H
+#define SADDLEWALK_PRIVATE_CONTEXT_H
+
+#include <saddlewalk/types.h>
+
+/* ---- model: the configuration and what follows from it -------------------------------------- */
+
+/** Fixed point: a speed in 2^-42 m/s or a position in 2^-42 um. */
+typedef int64_t saddle_fixed_t;
+
+/** Coefficients, derived once. */
+typedef struct {
+    float pendulum_m;              /**< l_p, [E1] */
+    float natural_frequency_rad_s; /**< w_n, [E2] */
+    float half_step_max_m;         /**< reach, [E6] */
+    float speed_ceiling_m_s;       /**< no speed at or above it is planned, [E6] */
+    float half_step_slope_s[2];    /**< of the step that each foot makes, [E4] */
+    saddle_fixed_t half_step_intercept[2];
+    float ankle_work_j;            /**< W_max, [E27] */
+    float foresight_growth;        /**< of a deviation within foresight_s, [E29] */
+    float com_height_min_m;        /**< a lower CoM is below the knees */
+    float crawl_m_s;               /**< a stop goes on at no less until it brakes, */
+    float braked_in_a_step_m_s;    /**< and at no more: every step is long enough to brake from it */
+    float braked_in_a_tick_m_s;    /**< what the longest tick can brake */
+    float command_max_age_us, com_max_age_us, foot_max_age_us; /**< to compare ages with */
+    uint32_t tick_max_us;
+    uint32_t shift_us;             /**< of a shift of weight */
+} saddle_body_t;
+
+typedef struct {
+    saddle_config_t config;
+    saddle_body_t body;
+} saddle_model_t;
+
+/* ---- motion --------------------------------------------------------------------------------- */
+
+/** A value over a way, and its derivative. */
+typedef struct {
+    float value;
+    float slope;
+} saddle_sample_t;
+
+/** A mismatch that fades out. */
+typedef struct {
+    saddle_sample_t start; /**< mismatch where the fading begins */
+    float start_m;         /**< place on the way */
+    float length_m;        /**< until it has gone; 0: there is none */
+} saddle_blend_t;
+
+/** One quarter of the stride: from beside the stance foot (foot via point) to midway between the
+ *  feet (saddle via point), or back. */
+typedef struct {
+    saddle_side_t stance;
+    float length_m;    /**< along x; half a step in steady walking */
+    float width_m;     /**< between the lines of the two feet, > 0 */
+    float amplitude_m; /**< A_y, at most width_m / pi, [E7] */
+    float vertical_m;  /**< delta Z, peak to peak, [E5] */
+} saddle_quarter_t;
+
+/** The speed goes to its target at a constant rate and stays there. */
+typedef struct {
+    saddle_fixed_t speed;  /**< now, >= 0 */
+    saddle_fixed_t target; /**< >= 0 */
+    float rate_m_s2;       /**< >= 0, magnitude */
+} saddle_speed_profile_t;
+
+/** One swing, relative to the stance CoP. Progress runs from 0 at one saddle via point over 1/2
+ *  beside the stance foot to 1 at the next; a first or last half swing is in the air for half. */
+typedef struct {
+    float lift_progress, land_progress; /**< in the air between them */
+    float line_y_m;                     /**< where it lands, from the stance CoP */
+    saddle_vec2_t offset_m;             /**< from the line to where it lifted off: fades out */
+    float clearance_m;
+    float path_width_m;                 /**< of the quarter whose lateral path is followed */
+} saddle_swing_t;
+
+/** One step-to-step transition. */
+typedef struct {
+    float heel_strike_rad;  /**< commanded angle of the foot at heel strike */
+    float toe_off_rad;      /**< toe-off angle when the heel strikes, [E13] */
+    float heel_strike_lead_m; /**< way of the CoM from heel strike to saddle via point, [E12] */
+    bool toe_off_limited;   /**< the geometry asks for an angle outside [0, pi] */
+} saddle_transition_t;
+
+/** The gait cycle. Every length is measured from the stance CoP, y from the walking line. */
+typedef struct {
+    saddle_speed_profile_t profile;
+    saddle_fixed_t position;      /**< CoM x, in [-quarter, quarter] */
+    saddle_fixed_t quarter_length;
+    saddle_quarter_t quarter;
+    uint8_t phase;                /**< 0 to 3; even: towards the saddle via point */
+    bool last_swing;              /**< the running step ends beside the stance foot: a stop */
+    uint32_t step_count;          /**< changes of the stance foot */
+    uint32_t stride_count;        /**< times that phase 0 was entered again */
+    int64_t origin_x_nm;          /**< way to the stance foot */
+    float stance_y_m;
+    saddle_blend_t lateral;       /**< mismatch of CoM y */
+    saddle_blend_t vertical;      /**< mismatch of CoM z, cycloid only */
+    saddle_swing_t swing;
+    float lift_pitch_rad;         /**< of the swing foot when it lifted off */
+    float heel_strike_rad;        /**< of the last heel strike */
+    float next_heel_strike_rad;   /**< of the next one */
+    saddle_transition_t transition; /**< of the nearest saddle via point, erf and rigid only */
+    saddle_vec2_t last_step_m;    /**< from the old stance foot to the new one */
+} saddle_cycle_t;
+
+typedef struct {
+    uint8_t mode;
+    bool shifting;          /**< time moves the CoM between the feet, not the gait cycle */
+    bool braking;           /**< a stop has begun that ends beside the stance foot */
+    float speed_m_s;        /**< wanted, feasible; 0: stand */
+    float heel_strike_rad;  /**< wanted, in range */
+    uint32_t shift_us;      /**< since the shift began */
+    saddle_vec2_t shift_from_m, shift_to_m; /**< CoM from the stance CoP */
+    saddle_vec2_t other_m;  /**< the other foot, from the stance CoP, while both stand */
+    uint8_t start_phase;    /**< where the cycle begins after the shift */
+    bool landing_open;      /**< the last landing has not been compared with the measured one */
+    saddle_cycle_t cycle;
+} saddle_planner_t;
+
+/* ---- senses --------------------------------------------------------------------------------- */
+
+/** A number that keeps its bits: since when, and what the rest of the body did meanwhile. */
+typedef struct {
+    float still_s;
+    saddle_vec2_t way_m; /**< of the CoM since then */
+} saddle_still_t;
+
+/** What the check of the measurements remembers. */
+typedef struct {
+    saddle_vec2_t velocity_m_s, cop_m[2]; /**< last believed */
+    float height_m;
+    saddle_still_t com_still, foot_still[2];
+    saddle_vec2_t anchor_m[2]; /**< where a foot on the ground should stay: CoP + way_m of the CoM,
+                                    since it landed or the CoM is still */
+    bool stood[2];             /**< the foot was on the ground at the last judgement */
+    float planned_way_m;       /**< since the CoM is still */
+    bool com_contradicted;     /**< a foot has left its place, or the plan has */
+    float flight_s;      /**< since both feet are in the air */
+} saddle_plausibility_t;
+
+/** Heel strikes, and what the last step was like. */
+typedef struct {
+    float step_distance_m, step_duration_s; /**< since the last heel strike */
+    float last_velocity_m_s;
+    float v_comp_m_s;      /**< mean AP speed over the last completed step */
+    float half_step_m;     /**< half of what the landed foot was ahead at the last heel strike */
+    float step_width_m;    /**< of the feet then, left minus right */
+    float since_strike_s;
+    float airborne_s[2];   /**< since the foot left the ground; 0 on it */
+    bool step_open;        /**< a heel strike was seen and the velocity was known ever since */
+    bool v_comp_known, half_step_known; /**< step_width_m goes with half_step_m */
+    bool stands;           /**< was seen to stand, and no step was completed since */
+    uint8_t stance;        /**< saddle_side_t: the only foot on the ground, else the one that landed last */
+} saddle_step_tracker_t;
+
+typedef struct {
+    bool armed;    /**< a measurement has come: from then on all are needed */
+    bool stopped;  /**< inputs were lost, and have not been good for resume_time_s since */
+    float lost_s;  /**< since a measurement was last usable */
+    float good_s;  /**< since all that is needed is usable */
+} saddle_safe_state_t;
+
+/* ---- balance -------------------------------------------------------------------------------- */
+
+typedef struct {
+    uint8_t level, reason;       /**< announced */
+    uint8_t caution_reason;      /**< of the last caution */
+    uint8_t at_least_ticks[4];   /**< for how long the level has been this one or worse */
+    uint8_t at_most_ticks[4];    /**< and this one or better */
+} saddle_level_state_t;
+
+typedef struct {
+    saddle_step_tracker_t steps;
+    saddle_level_state_t level;
+} saddle_supervisor_t;
+
+/** Caller-owned state; treat the fields as private. */
+typedef struct {
+    uint64_t last_time_us;
+    uint32_t initialised;
+    saddle_model_t model;
+    saddle_planner_t planner;
+    saddle_plausibility_t plausibility;
+    saddle_supervisor_t supervisor;
+    saddle_safe_state_t safe_state;
+    saddle_command_t command; /**< the last usable one */
+    uint32_t command_age_us;
+    bool ticked;
+} saddle_context_t;
+
+#endif

@@ -1,0 +1,343 @@
+/** What goes into the core and what comes out: configuration, command, measurement, plan, scores,
+ *  verdict, and the faults and limits that go with them. The functions are in saddlewalk.h.
+ *
+ *  Frame: x forward, y to the left, z up; ground z = 0; walking line y = 0. SI units and radians. */
+#ifndef SADDLEWALK_TYPES_H
+#define SADDLEWALK_TYPES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/** Standard gravity, m/s^2. */
+#define SADDLE_GRAVITY_M_S2 9.80665f
+
+typedef struct {
+    float x, y;
+} saddle_vec2_t;
+
+typedef struct {
+    float x, y, z;
+} saddle_vec3_t;
+
+/** Index of every per-foot array. */
+typedef enum { SADDLE_LEFT = 0, SADDLE_RIGHT = 1 } saddle_side_t;
+
+/* ---- configuration ------------------------------------------------------------------------- */
+
+typedef enum {
+    SADDLE_ANKLE_ERF = 0,   /**< the paper's ankle strategy, [E12]; z jumps at heel strike */
+    SADDLE_ANKLE_RIGID = 1, /**< the inverted pendulum: the leg keeps its length */
+    SADDLE_ANKLE_CYCLOID = 2, /**< smooth z with the human amplitude, [E24]; for driving joints */
+    SADDLE_ANKLE_COUNT
+} saddle_ankle_t;
+
+/** Everything that may be fitted to a person or a device. Start from saddle_config_default(), then
+ *  override; an all-zero configuration fails the check. Defaults are the paper's. Floats come first,
+ *  in the order of saddle_config_field(). */
+typedef struct {
+    float body_mass_kg;
+    float body_height_m;
+    float pendulum_ratio;             /**< pendulum length / body height, [E1] */
+    float cop_range_m;                /**< d_h: CoP to heel and metatarsal pivots, [E11] [E16] */
+    float step_width_slow_m;          /**< below step_width_slow_speed_m_s, [E3] */
+    float step_width_fast_m;          /**< above step_width_fast_speed_m_s, [E3] */
+    float step_width_slow_speed_m_s;
+    float step_width_fast_speed_m_s;
+    float step_width_slope_s;         /**< between the two speeds, [E3] */
+    float step_width_intercept_m;
+    float half_step_slope_s;          /**< [E4] */
+    float half_step_intercept_m;
+    float vertical_slope_s;           /**< peak-to-peak vertical CoM excursion, [E5] */
+    float vertical_intercept_m;
+    float lateral_factor;             /**< of the lateral CoM amplitude; 1: as printed, [E7] */
+    float peak_speed_m_s;             /**< where reach and XCoM limit meet, [E6] */
+    float ankle_time_constant_s;      /**< of the erf profile, [E12] */
+    float heel_strike_max_rad;        /**< a larger commanded angle is limited */
+    float acceleration_m_s2;          /**< largest change of the walking speed */
+    float shift_time_s;               /**< of the weight to the first stance leg, and back */
+    float step_length_factor_left;    /**< steps that the left foot makes; 1: symmetric, [E4] */
+    float step_length_factor_right;
+    float step_width_factor_left;     /**< left foot to the walking line; 1: symmetric, [E3] */
+    float step_width_factor_right;
+    float swing_clearance_m;          /**< height of the swing foot at mid-swing, [E10] */
+    float tick_max_s;                 /**< the plan advances by no more than this in one tick */
+    float command_max_age_s;          /**< an older command is not obeyed: the walk stops */
+    float lost_inputs_stop;           /**< 1: lost inputs stop the walk; 0: for recordings, or a
+                                           device with a safe state of its own */
+    float resume_time_s;              /**< inputs that were lost must be good for so long */
+    float com_max_age_s;              /**< older measurements of the CoM are not used */
+    float foot_max_age_s;             /**< nor of a foot's CoP and contact */
+    float flight_max_s;               /**< both feet in the air for longer is no walking */
+    float crossing_max_m;             /**< the left CoP lies right of the right one by no more */
+    float step_time_max_s;            /**< without a heel strike for longer nobody walks */
+    float bos_factor;                 /**< share of the geometric BoS that is used; 1: the paper's */
+    float ankle_work_factor;          /**< W_max of m g d_h^2 / l_p, [E27] */
+    float stop_margin_m;              /**< of the XCoM, to stop in the present posture; -10: any, as
+                                           printed, [E31] */
+    float foresight_s;                /**< a wearer in need can put the foot down within this, [E28] */
+    float cop_shift_ap_m;             /**< how far the wearer can move the CoP, [E30]; 0: as printed */
+    float cop_shift_ml_m;
+    float recovery_width_min_m;       /**< a recovery step is at least so wide, [E30] */
+    float recovery_width_max_m;       /**< and at most so wide */
+    float recovery_margin_m;          /**< XCoM inside the landing CoP by this, [E30] */
+    float recovery_follow;            /**< share of the XCoM's departure that the landing follows; 0:
+                                           the nearest place to the planned one, [E30] */
+    float caution_score;              /**< a score below it is a caution, [E31] */
+    float caution_xcom_ap_m;          /**< XCoM off the planned one by more is a caution, [E31] */
+    float caution_xcom_ml_m;
+    float level_hold_ticks;           /**< a level holds this long before it is announced */
+    saddle_ankle_t ankle;
+} saddle_config_t;
+
+/** One float field of the configuration and the values that saddle_config_check() accepts. */
+typedef struct {
+    const char *name; /**< as in saddle_config_t and in configuration files */
+    size_t offset;    /**< in saddle_config_t, bytes */
+    float min, max;
+} saddle_config_field_t;
+
+/* ---- command ------------------------------------------------------------------------------- */
+
+typedef enum {
+    SADDLE_COMMAND_STAND = 0, /**< stop at the next place where the feet come side by side */
+    SADDLE_COMMAND_WALK = 1   /**< walk; speed 0 is a stand */
+} saddle_command_mode_t;
+
+/** The slowest walk that is planned; a slower one, but for 0, is limited to it. */
+#define SADDLE_SPEED_FLOOR_M_S 0.01f
+
+/** What is asked of the planner, at any time. The speed is approached at acceleration_m_s2; the
+ *  heel-strike angle holds from the heel strike after the next. */
+typedef struct {
+    uint8_t mode;          /**< saddle_command_mode_t; a stand does not need the numbers below */
+    float speed_m_s;       /**< along x */
+    float heel_strike_rad; /**< foot to ground when the heel strikes; erf ankles only */
+} saddle_command_t;
+
+/* ---- measurement --------------------------------------------------------------------------- */
+
+/** Age of a measurement that never came. */
+#define SADDLE_AGE_NEVER_US UINT32_MAX
+
+/** Each foot and the CoM have their own age at the time of the tick. */
+typedef struct {
+    struct {
+        float height_m; /**< above the ground */
+        saddle_vec2_t velocity_m_s;
+        uint32_t age_us;
+    } com;
+    struct {
+        saddle_vec2_t cop_m; /**< relative to the CoM */
+        bool contact;
+        uint32_t age_us;
+    } foot[2];
+} saddle_measurement_t;
+
+/** Why an input was not used or gave no score. */
+typedef enum {
+    SADDLE_FAULT_COMMAND = 1u << 0, /**< not usable: the last good one holds */
+    SADDLE_FAULT_COM_STALE = 1u << 1,   /**< older than com_max_age_s */
+    SADDLE_FAULT_COM_RANGE = 1u << 2,   /**< not finite or absurd; the CoM below the knees */
+    SADDLE_FAULT_LEFT_STALE = 1u << 3,  /**< older than foot_max_age_s */
+    SADDLE_FAULT_LEFT_RANGE = 1u << 4,
+    SADDLE_FAULT_RIGHT_STALE = 1u << 5,
+    SADDLE_FAULT_RIGHT_RANGE = 1u << 6,
+    SADDLE_FAULT_FEET_TOGETHER = 1u << 7,    /**< CoPs within 1 mm: no saddle space */
+    SADDLE_FAULT_SPEED_INFEASIBLE = 1u << 8, /**< v_CoMp cannot be walked: no step scores */
+    SADDLE_FAULT_COM_FROZEN = 1u << 9,    /**< the same bits for com_max_age_s while the feet moved
+                                               otherwise, or a walk was planned */
+    SADDLE_FAULT_LEFT_FROZEN = 1u << 10,  /**< the same bits for foot_max_age_s while the CoM moved */
+    SADDLE_FAULT_RIGHT_FROZEN = 1u << 11,
+    SADDLE_FAULT_AIRBORNE = 1u << 12,     /**< both feet in the air for longer than flight_max_s */
+    SADDLE_FAULT_FEET_CROSSED = 1u << 13, /**< by more than crossing_max_m */
+    SADDLE_FAULT_COMMAND_STALE = 1u << 14 /**< no usable one for command_max_age_s */
+} saddle_fault_t;
+
+/** Faults that leave the CoM, or the feet, without a measurement to use. */
+#define SADDLE_FAULTS_COM \
+    ((uint32_t)SADDLE_FAULT_COM_STALE | (uint32_t)SADDLE_FAULT_COM_RANGE | \
+     (uint32_t)SADDLE_FAULT_COM_FROZEN)
+#define SADDLE_FAULTS_LEFT \
+    ((uint32_t)SADDLE_FAULT_LEFT_STALE | (uint32_t)SADDLE_FAULT_LEFT_RANGE | \
+     (uint32_t)SADDLE_FAULT_LEFT_FROZEN)
+#define SADDLE_FAULTS_RIGHT \
+    ((uint32_t)SADDLE_FAULT_RIGHT_STALE | (uint32_t)SADDLE_FAULT_RIGHT_RANGE | \
+     (uint32_t)SADDLE_FAULT_RIGHT_FROZEN)
+#define SADDLE_FAULTS_FEET \
+    (SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT | (uint32_t)SADDLE_FAULT_AIRBORNE | \
+     (uint32_t)SADDLE_FAULT_FEET_CROSSED)
+
+/* ---- plan ---------------------------------------------------------------------------------- */
+
+typedef enum {
+    SADDLE_MODE_STANDING = 0,
+    SADDLE_MODE_STARTING = 1, /**< weight goes to the first stance leg, then the first step */
+    SADDLE_MODE_WALKING = 2,
+    SADDLE_MODE_STOPPING = 3  /**< until the feet are side by side and the CoM between them */
+} saddle_mode_t;
+
+/** Limits that shaped an output. */
+typedef enum {
+    SADDLE_LIMIT_SPEED = 1u << 0,       /**< commanded speed not feasible: the nearest that is */
+    SADDLE_LIMIT_HEEL_STRIKE = 1u << 1, /**< angle outside [0, heel_strike_max_rad] */
+    SADDLE_LIMIT_TOE_OFF = 1u << 2,     /**< ankle angle outside the geometry, [E13] [E25] */
+    SADDLE_LIMIT_FEET = 1u << 3,        /**< measured feet that no plan can start or go on from */
+    SADDLE_LIMIT_TICK_GAP = 1u << 4,    /**< late tick: the plan advanced by tick_max_s only */
+    SADDLE_LIMIT_SAFE_STOP = 1u << 5    /**< inputs were lost: the walk stops until
+                                             they have been good for resume_time_s */
+} saddle_limit_t;
+
+/** Longest time that is predicted; what never comes is said to come then. */
+#define SADDLE_TIME_MAX_S 1000.0f
+
+/** The plan at one instant. x is measured from the CoP of the planned stance foot, which lies at
+ *  origin_x_nm from the first stance foot; y from the walking line; z from the ground. */
+typedef struct {
+    bool valid;             /**< false: the tick failed and all else is 0 */
+    uint8_t mode;           /**< saddle_mode_t */
+    uint8_t phase;          /**< 0 to 3: the quarter of the stride, from the left foot via point */
+    uint8_t support;        /**< saddle_side_t; both feet carry while standing */
+    uint32_t step_count;    /**< changes of the stance foot since the start */
+    uint32_t stride_count;  /**< times the left foot via point was passed since the start */
+    float theta_rad;        /**< gait phase within the stride, [0, 2 pi), [E8] */
+    int64_t origin_x_nm;    /**< walked distance to the stance foot; integer, so it never drifts */
+    float speed_m_s, step_length_m, step_width_m; /**< of the running quarter */
+    saddle_vec3_t com_m, com_velocity_m_s;
+    saddle_vec3_t foot_m[2];           /**< CoPs */
+    float foot_pitch_rad[2];           /**< sole to ground, positive heel up */
+    saddle_vec3_t swing_velocity_m_s;  /**< of the foot that is not in support */
+    float leg_length_m;                /**< stance leg */
+    float knee_flexion_m;              /**< stance leg shorter than l_p by this, cycloid only */
+    float toe_off_rad, heel_strike_rad; /**< ankle angles, sole to ground */
+    float time_to_via_point_s;         /**< next via point, or end of a shift of weight */
+    float time_to_heel_strike_s;       /**< next heel strike, [E12] */
+    float time_to_toe_off_s;           /**< next change of support: the swing CoP arrives */
+    saddle_vec2_t landing_m;           /**< where the swing CoP arrives */
+} saddle_plan_t;
+
+/* ---- scores -------------------------------------------------------------------------------- */
+
+#define SADDLE_BOS_VERTICES 16
+
+/** Base of support: the disc around the midpoint of the CoPs, cut at +-half_depth_m along x_S; or the
+ *  share of it that a person uses. */
+typedef struct {
+    saddle_vec2_t centre_m;
+    saddle_vec2_t axis_x;  /**< unit vector x_S; lambda = atan2(axis_x.y, axis_x.x) */
+    float radius_m;        /**< half the distance between the CoPs, times the share */
+    float half_depth_m;    /**< d_h, times the share */
+    bool defined;          /**< false: feet together, every number above is 0 */
+} saddle_bos_t;
+
+/** Which fields of saddle_scores_t hold a result; the others are 0. xcom_m is known whenever the
+ *  velocity is, and bos says so itself (bos.defined). */
+typedef enum {
+    SADDLE_VALID_V_COMP = 1u << 0,
+    SADDLE_VALID_STEP = 1u << 1, /**< s_pend and s_jump */
+    SADDLE_VALID_S_SW = 1u << 2,
+    SADDLE_VALID_MOS_COM = 1u << 3,
+    SADDLE_VALID_MOS_XCOM = 1u << 4,
+    SADDLE_VALID_GRAVITY = 1u << 5,
+    SADDLE_VALID_STOP = 1u << 6, /**< excess_stop_j and can_stop: a leg reaches the CoM */
+    SADDLE_VALID_ALL = (1u << 7) - 1u
+} saddle_valid_t;
+
+/** Scores of a posture, in its frame. */
+typedef struct {
+    uint32_t valid;    /**< saddle_valid_t bits */
+    float v_comp_m_s;  /**< mean AP speed over the last completed step, else the planner's */
+    float s_pend, s_jump; /**< [E20] */
+    float s_sw;        /**< [E21] */
+    float mos_com_m, mos_xcom_m; /**< margins in the instantaneous BoS, [E17] */
+    saddle_vec2_t gravity_n;     /**< [E18] */
+    float excess_stop_j;         /**< [E26] */
+    bool can_stop;               /**< [E27] the ankles can absorb that */
+    bool paper_stable;           /**< the paper's verdict: can_stop, or all three scores > 0 */
+    saddle_vec2_t xcom_m;        /**< [E19] */
+    saddle_bos_t bos;            /**< instantaneous (I-BoS) */
+} saddle_scores_t;
+
+/* ---- verdict ------------------------------------------------------------------------------- */
+
+/** How far the wearer is from falling, [E31]. */
+typedef enum {
+    SADDLE_LEVEL_UNKNOWN = 0,
+    SADDLE_LEVEL_STABLE = 1,
+    SADDLE_LEVEL_CAUTION = 2, /**< departs from the walk, but can stop or step */
+    SADDLE_LEVEL_UNSTABLE = 3 /**< can neither stop nor reach a place to step to */
+} saddle_level_t;
+
+/** What decided the level. */
+typedef enum {
+    SADDLE_REASON_NONE = 0,
+    SADDLE_REASON_INPUT = 1,     /**< unknown: the faults say which input */
+    SADDLE_REASON_NO_WALK = 2,   /**< unknown: nothing is planned, and nobody was seen to stand or to
+                                      complete a step */
+    SADDLE_REASON_NO_STEP = 3,   /**< unstable: no place within reach catches the XCoM */
+    SADDLE_REASON_SPEED = 4,     /**< caution, here and below: v_CoMp cannot be walked */
+    SADDLE_REASON_S_PEND = 5,
+    SADDLE_REASON_S_JUMP = 6,
+    SADDLE_REASON_S_SW = 7,
+    SADDLE_REASON_XCOM_AP = 8,   /**< the XCoM is off the planned one */
+    SADDLE_REASON_XCOM_ML = 9,
+    SADDLE_REASON_OFF_TRACK = 10, /**< more energy than the ankles can bring back to the plan's */
+    SADDLE_REASON_SETTLING = 11   /**< unknown: no level has held for level_hold_ticks yet */
+} saddle_reason_t;
+
+/** Points are measured from the stance CoP, the foot that does not step. */
+typedef struct {
+    bool found;     /**< false: no place within reach helps, and landing_m is 0 */
+    bool stops;     /**< the XCoM will lie in the BoS of that posture: the step ends the walk */
+    uint8_t foot;   /**< saddle_side_t: the foot that steps */
+    saddle_vec2_t landing_m; /**< the place nearest to the wanted one */
+    float margin_m; /**< reach that is left on the scarcer axis; negative: what is lacking */
+} saddle_recovery_t;
+
+/** The measured posture against the walk that is planned. Where compared is false all else but
+ *  level and reason is 0. */
+typedef struct {
+    uint8_t level;  /**< saddle_level_t that is announced */
+    uint8_t reason; /**< saddle_reason_t of it */
+    bool compared;
+    bool on_track;          /**< [E27] the ankles can absorb excess_track_j */
+    float excess_track_j;   /**< [E26]; it and on_track only with SADDLE_VALID_STOP */
+    float ebos_com_m, ebos_xcom_m;  /**< margins expected in the BoS of the next heel strike (E-BoS),
+                                         [E29] */
+    saddle_vec2_t xcom_deviation_m; /**< from the planned XCoM at the same phase */
+    saddle_recovery_t recovery;     /**< [E30] */
+} saddle_verdict_t;
+
+/* ---- a tick -------------------------------------------------------------------------------- */
+
+/** Did the call work? What the answer is worth is told by plan.valid and scores.valid. */
+typedef enum {
+    SADDLE_OK = 0,
+    SADDLE_ERROR_NULL = 1,          /**< an argument is NULL */
+    SADDLE_ERROR_CONFIG = 2,        /**< saddle_config_check() names the field */
+    SADDLE_ERROR_UNINITIALISED = 3, /**< saddle_init() has not succeeded on this context */
+    SADDLE_ERROR_TIME = 4,          /**< time_us went backwards: no plan, no scores, state kept,
+                                         until it has caught up or saddle_init() starts over */
+    SADDLE_ERROR_COMMAND = 5,       /**< saddle_join() needs a walk with a speed > 0 */
+    SADDLE_ERROR_BUILD = 6          /**< the core's flags, or the processor's rounding mode, break
+                                         its bits; docs/porting.md names those to use */
+} saddle_status_t;
+
+typedef struct {
+    uint64_t time_us; /**< the caller's monotonic clock, any origin */
+    saddle_command_t command;
+    uint32_t command_age_us; /**< since the command was last confirmed */
+    saddle_measurement_t measurement;
+} saddle_input_t;
+
+/** status: did the call work; limits: what clamped the plan; faults: which inputs were not used. */
+typedef struct {
+    saddle_status_t status;
+    uint32_t limits; /**< saddle_limit_t bits */
+    uint32_t faults; /**< saddle_fault_t bits */
+    saddle_plan_t plan;
+    saddle_scores_t scores;   /**< of the measured posture, in the frame of the CoM */
+    saddle_verdict_t verdict; /**< the measured posture against the plan */
+} saddle_output_t;
+
+#endif

@@ -1,0 +1,38 @@
+/** The measured posture against the planned step, the person's own walk, or standing. */
+#ifndef SADDLEWALK_COMPARISON_H
+#define SADDLEWALK_COMPARISON_H
+
+#include "balance/energy.h"
+#include "balance/expected_step.h"
+#include "balance/scores.h"
+
+#include <saddlewalk/private/context.h>
+
+/** What the supervisor takes from the planner: where the wearer is to be. */
+typedef struct {
+    bool leads;        /**< a walk is planned, or has been walked since the start */
+    bool walking;      /**< else both feet stand */
+    saddle_step_t step;      /**< the planned one, while walking */
+    saddle_com_state_t com;  /**< planned, from the planned stance CoP; while both feet stand from
+                                  midway between them */
+} saddle_intent_t;
+
+/** What is known of the wearer at one instant. */
+typedef struct {
+    const saddle_step_tracker_t *steps;
+    const saddle_measurement_t *measurement;
+    const saddle_posture_t *posture; /**< of that measurement */
+    const saddle_scores_t *scores;   /**< of that posture */
+} saddle_wearer_t;
+
+/** Clear what a comparison writes. */
+void saddle_compare_nothing(saddle_verdict_t *verdict);
+
+/** Compare with what is planned; without a command, with the walk of the last step or standing. Feet
+ *  and CoM are known and the BoS is defined. Writes to a cleared verdict all but level and reason,
+ *  nothing if there is no walk to compare with. */
+void saddle_compare(const saddle_model_t *model,
+                    const saddle_wearer_t *wearer, const saddle_intent_t *intent,
+                    saddle_verdict_t *verdict);
+
+#endif

@@ -1,0 +1,73 @@
+#include "balance/expected_step.h"
+
+#include "math/elementary.h"
+#include "math/vec2.h"
+#include "model/gait_model.h"
+#include "motion/com_path.h"
+
+/* A step that ends beside the stance foot still has a quarter with a shape. */
+#define QUARTER_MIN_M 1.0e-3f
+
+/* Both feet carry for about this long after a heel strike: a sixth of a step. */
+#define TRAILING_S 0.1f
+
+static saddle_com_state_t state_at(const saddle_quarter_t *quarter, float speed_m_s, float x_m)
+{
+    const saddle_sample_t lateral =
+        saddle_com_lateral(quarter, saddle_quarter_angle_rad(quarter, x_m));
+    const saddle_com_state_t state = {
+        .com_m = {x_m, lateral.value},
+        .velocity_m_s = {speed_m_s, lateral.slope * speed_m_s},
+    };
+    return state;
+}
+
+/* The same where the foot lands: midway between the feet. */
+static saddle_com_state_t state_at_saddle(const saddle_quarter_t *quarter, float speed_m_s)
+{
+    const float outward = saddle_outward(quarter->stance);
+    const float slope = -outward * quarter->amplitude_m * SADDLE_HALF_PI / quarter->length_m;
+    const saddle_com_state_t state = {
+        .com_m = {quarter->length_m, -outward * 0.5f * quarter->width_m},
+        .velocity_m_s = {speed_m_s, slope * speed_m_s},
+    };
+    return state;
+}
+
+saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
+                                   float x_m)
+{
+    const float half_ahead_m = 0.5f * step->landing_m.x;
+    const saddle_quarter_t behind = saddle_quarter(model, step->stance, step->half_behind_m,
+                                                   step->width_behind_m, step->speed_m_s);
+    const saddle_quarter_t ahead = saddle_quarter(
+        model, step->stance, half_ahead_m > QUARTER_MIN_M ? half_ahead_m : QUARTER_MIN_M,
+        saddle_magnitude(step->landing_m.y), step->speed_m_s);
+    const float phase_m = saddle_clamp(x_m, -step->half_behind_m, half_ahead_m);
+    saddle_expectation_t expected;
+    expected.now = state_at(phase_m < 0.0f ? &behind : &ahead, step->speed_m_s, phase_m);
+    expected.landing = half_ahead_m > QUARTER_MIN_M
+                           ? state_at_saddle(&ahead, step->speed_m_s)
+                           : state_at(&ahead, step->speed_m_s, half_ahead_m);
+    expected.landing_m = step->landing_m;
+    expected.time_s =
+        saddle_clamp((half_ahead_m - phase_m) / step->speed_m_s, 0.0f, model->config.foresight_s);
+    expected.step_time_s = (half_ahead_m + step->half_behind_m) / step->speed_m_s;
+    return expected;
+}
+
+saddle_growth_t saddle_growth(const saddle_model_t *model, float time_s, bool trailing)
+{
+    const float w = model->body.natural_frequency_rad_s;
+    const float carried_s = time_s < TRAILING_S ? time_s : TRAILING_S;
+    saddle_growth_t growth;
+    growth.factor = saddle_exp(w * time_s);
+    growth.trailing = trailing ? growth.factor - saddle_exp(w * (time_s - carried_s)) : 0.0f;
+    return growth;
+}
+
+float saddle_grown_m(float com_m, float xcom_m, const saddle_growth_t *growth)
+{
+    const float receding_m = 2.0f * com_m - xcom_m;
+    return 0.5f * (growth->factor * xcom_m + receding_m / growth->factor);
+}

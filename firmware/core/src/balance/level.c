@@ -1,0 +1,141 @@
+#include "balance/level.h"
+
+#include "balance/scores.h"
+#include "math/elementary.h"
+
+/* A score that a walk is judged by and that is too low. */
+static saddle_reason_t low_score(const saddle_model_t *model, uint32_t faults,
+                                 const saddle_scores_t *scores)
+{
+    const bool steps = saddle_scores_hold(scores, (uint32_t)SADDLE_VALID_STEP);
+    if ((faults & (uint32_t)SADDLE_FAULT_SPEED_INFEASIBLE) != 0u) {
+        return SADDLE_REASON_SPEED;
+    }
+    if (steps && scores->s_pend < model->config.caution_score) {
+        return SADDLE_REASON_S_PEND;
+    }
+    if (steps && scores->s_jump < model->config.caution_score) {
+        return SADDLE_REASON_S_JUMP;
+    }
+    if (saddle_scores_hold(scores, (uint32_t)SADDLE_VALID_S_SW) &&
+        scores->s_sw < model->config.caution_score) {
+        return SADDLE_REASON_S_SW;
+    }
+    return SADDLE_REASON_NONE;
+}
+
+static saddle_reason_t departure(const saddle_model_t *model, const saddle_verdict_t *verdict)
+{
+    if (saddle_magnitude(verdict->xcom_deviation_m.x) > model->config.caution_xcom_ap_m) {
+        return SADDLE_REASON_XCOM_AP;
+    }
+    if (saddle_magnitude(verdict->xcom_deviation_m.y) > model->config.caution_xcom_ml_m) {
+        return SADDLE_REASON_XCOM_ML;
+    }
+    return verdict->on_track ? SADDLE_REASON_NONE : SADDLE_REASON_OFF_TRACK;
+}
+
+static saddle_reason_t reason_of(const saddle_model_t *model, uint32_t faults,
+                                 const saddle_scores_t *scores, const saddle_verdict_t *verdict)
+{
+    const uint32_t unusable =
+        SADDLE_FAULTS_COM | SADDLE_FAULTS_FEET | (uint32_t)SADDLE_FAULT_FEET_TOGETHER;
+    if ((faults & unusable) != 0u) {
+        return SADDLE_REASON_INPUT;
+    }
+    if (!verdict->compared) {
+        return SADDLE_REASON_NO_WALK;
+    }
+    const bool stays = scores->can_stop && scores->mos_xcom_m >= model->config.stop_margin_m;
+    if (!stays && !verdict->recovery.found) {
+        return SADDLE_REASON_NO_STEP;
+    }
+    const saddle_reason_t low = low_score(model, faults, scores);
+    return low != SADDLE_REASON_NONE ? low : departure(model, verdict);
+}
+
+static saddle_level_t level_of(saddle_reason_t reason)
+{
+    switch (reason) {
+    case SADDLE_REASON_NONE: return SADDLE_LEVEL_STABLE;
+    case SADDLE_REASON_INPUT:
+    case SADDLE_REASON_NO_WALK:
+    case SADDLE_REASON_SETTLING: return SADDLE_LEVEL_UNKNOWN;
+    case SADDLE_REASON_NO_STEP: return SADDLE_LEVEL_UNSTABLE;
+    default: return SADDLE_LEVEL_CAUTION;
+    }
+}
+
+static void count(uint8_t *ticks, bool goes_on)
+{
+    *ticks = (uint8_t)(goes_on ? (*ticks < UINT8_MAX ? *ticks + 1u : UINT8_MAX) : 0u);
+}
+
+static void count_levels(saddle_level_state_t *state, uint8_t level)
+{
+    const bool known = level != (uint8_t)SADDLE_LEVEL_UNKNOWN;
+    for (uint8_t i = SADDLE_LEVEL_STABLE; i <= (uint8_t)SADDLE_LEVEL_UNSTABLE; i++) {
+        count(&state->at_least_ticks[i], known && level >= i);
+        count(&state->at_most_ticks[i], known && level <= i);
+    }
+}
+
+/* The worst level that has been reached or passed for long enough; the best one likewise if that is
+ * better than the announced one. The announced one if neither has. */
+static uint8_t level_held(const saddle_level_state_t *state, const saddle_model_t *model)
+{
+    const uint8_t announced = state->level;
+    for (uint8_t i = SADDLE_LEVEL_UNSTABLE; i > announced && i > 0u; i--) {
+        if ((float)state->at_least_ticks[i] >= model->config.level_hold_ticks) {
+            return i;
+        }
+    }
+    for (uint8_t i = SADDLE_LEVEL_STABLE; i < announced; i++) {
+        if ((float)state->at_most_ticks[i] >= model->config.level_hold_ticks) {
+            return i;
+        }
+    }
+    return announced;
+}
+
+/* Why the announced level is that, whatever this tick's own reason is. */
+static saddle_reason_t announced_reason(const saddle_level_state_t *state, saddle_reason_t reason)
+{
+    switch (state->level) {
+    case SADDLE_LEVEL_STABLE: return SADDLE_REASON_NONE;
+    case SADDLE_LEVEL_CAUTION: return (saddle_reason_t)state->caution_reason;
+    case SADDLE_LEVEL_UNSTABLE: return SADDLE_REASON_NO_STEP;
+    default: return level_of(reason) == SADDLE_LEVEL_UNKNOWN ? reason : SADDLE_REASON_SETTLING;
+    }
+}
+
+/* A level is announced once it, or a worse one, has held for long enough, a better one likewise;
+ * unknown at once. */
+static void announce(saddle_level_state_t *state, const saddle_model_t *model,
+                     saddle_reason_t reason)
+{
+    const saddle_level_t level = level_of(reason);
+    count_levels(state, (uint8_t)level);
+    if (level == SADDLE_LEVEL_CAUTION) {
+        state->caution_reason = (uint8_t)reason;
+    }
+    state->level = level == SADDLE_LEVEL_UNKNOWN ? (uint8_t)level : level_held(state, model);
+    state->reason = (uint8_t)announced_reason(state, reason);
+}
+
+void saddle_level_update(saddle_level_state_t *state, const saddle_model_t *model, uint32_t faults,
+                         const saddle_scores_t *scores, saddle_verdict_t *verdict)
+{
+    announce(state, model, reason_of(model, faults, scores, verdict));
+    verdict->level = state->level;
+    verdict->reason = state->reason;
+}
+
+void saddle_level_reset(saddle_level_state_t *state)
+{
+    state->level = (uint8_t)SADDLE_LEVEL_UNKNOWN;
+    for (int i = 0; i <= (int)SADDLE_LEVEL_UNSTABLE; i++) {
+        state->at_least_ticks[i] = 0;
+        state->at_most_ticks[i] = 0;
+    }
+}

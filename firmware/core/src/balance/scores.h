@@ -1,0 +1,33 @@
+/** The paper's scores of one posture, measured or planned. */
+#ifndef SADDLEWALK_SCORES_H
+#define SADDLEWALK_SCORES_H
+
+#include <saddlewalk/private/context.h>
+
+typedef enum {
+    SADDLE_KNOWN_FEET = 1u << 0,
+    SADDLE_KNOWN_VELOCITY = 1u << 1,
+    SADDLE_KNOWN_SPEED = 1u << 2,     /**< v_comp_m_s */
+    SADDLE_KNOWN_HALF_STEP = 1u << 3,
+    SADDLE_KNOWN_ALL = (1u << 4) - 1u
+} saddle_known_t;
+
+/** A posture to score, in any frame with x forward and y left. */
+typedef struct {
+    saddle_vec2_t com_m, com_velocity_m_s, cop_m[2];
+    float v_comp_m_s;  /**< walking speed that the scores refer to */
+    float half_step_m; /**< half the AP distance of the CoPs at the last heel strike */
+    uint32_t known;    /**< saddle_known_t bits; the numbers of the others are not read */
+} saddle_posture_t;
+
+/** Score a posture. Whatever is not known is not scored. Writes all of *scores. */
+void saddle_score_posture(const saddle_model_t *model,
+                          const saddle_posture_t *posture, saddle_scores_t *scores);
+
+/** Whether all of these saddle_valid_t results are there. */
+bool saddle_scores_hold(const saddle_scores_t *scores, uint32_t results);
+
+/** saddle_fault_t bits for what was known and gave no score all the same. */
+uint32_t saddle_score_faults(uint32_t known, const saddle_scores_t *scores);
+
+#endif

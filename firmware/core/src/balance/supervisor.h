@@ -1,0 +1,21 @@
+/** The stability supervisor: scores the measured posture, compares it with the walk that is
+ *  planned, and says how far the wearer is from falling. */
+#ifndef SADDLEWALK_SUPERVISOR_H
+#define SADDLEWALK_SUPERVISOR_H
+
+#include "balance/comparison.h"
+
+#include <saddlewalk/private/context.h>
+
+/** What happened in the last gap_s is not known: no level holds over it. */
+void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s);
+
+/** Follow the steps, score the posture in the frame of the CoM and give the verdict. While a plan has
+ *  both feet stand there is no walk to score: v_comp_m_s, the step scores and s_sw are not valid.
+ *  faults: what saddle_judge() said. Returns the faults and those of the scores. */
+uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_model_t *model,
+                                  const saddle_measurement_t *measurement, uint32_t faults,
+                                  float dt_s, const saddle_intent_t *intent,
+                                  saddle_scores_t *scores, saddle_verdict_t *verdict);
+
+#endif

@@ -1,0 +1,111 @@
+#include "math/fixed.h"
+
+#define TWO_POW_12 4096.0f
+#define TWO_POW_15 32768.0f
+#define TWO_POW_27 134217728.0f
+#define TWO_POW_28 268435456.0f
+#define TWO_POW_31 2147483648.0f
+
+/* Positions per metre: 10^6 2^42 = 15625 2^48. */
+#define MICROMETRES_ODD_PART 15625
+#define POSITION_PER_2_POW_MINUS_40_M ((int64_t)MICROMETRES_ODD_PART * 256)
+#define M_PER_2_POW_32 (1.0f / (15625.0f * 65536.0f))
+
+/* 2^-27 um/s in units of speed, times 2^36. */
+#define SPEED_PER_2_POW_MINUS_27_UM_S ((int64_t)2251799814)
+
+/* 2 m and 4 m/s. */
+#define POSITION_MAX (((int64_t)2 << 40) * POSITION_PER_2_POW_MINUS_40_M)
+#define SPEED_MAX ((int64_t)4 << 42)
+
+#define RATE_MAX_M_S2 15.9999990f /* the largest float below 16 */
+#define TIME_MAX_S 1.99999988f /* the largest float below 2 */
+#define DT_MAX_US 10000000u
+
+static float limited(float value, float max)
+{
+    if (value != value) {
+        return 0.0f;
+    }
+    if (value < -max) {
+        return -max;
+    }
+    return value > max ? max : value;
+}
+
+static int64_t limited_integer(int64_t value, int64_t max)
+{
+    if (value < -max) {
+        return -max;
+    }
+    return value > max ? max : value;
+}
+
+/* value * scale * fine as an integer, truncated; |value * scale| < 2^31. Both steps are exact. */
+static int64_t to_integer(float value, float scale, float fine)
+{
+    const float scaled = value * scale;
+    const int32_t upper = (int32_t)scaled;
+    const int32_t lower = (int32_t)((scaled - (float)upper) * fine);
+    return (int64_t)upper * (int32_t)fine + lower;
+}
+
+saddle_fixed_t saddle_position_from_m(float value_m)
+{
+    return to_integer(limited(value_m, 2.0f), TWO_POW_28, TWO_POW_12) *
+           POSITION_PER_2_POW_MINUS_40_M;
+}
+
+float saddle_position_to_m(saddle_fixed_t position)
+{
+    return (float)(int32_t)(position / ((int64_t)1 << 32)) * M_PER_2_POW_32;
+}
+
+int64_t saddle_position_to_nm(saddle_fixed_t position)
+{
+    const int64_t half_nm = (int64_t)1 << 21;
+    return (position / ((int64_t)1 << 20) * 1000 + half_nm) / ((int64_t)1 << 22);
+}
+
+saddle_fixed_t saddle_speed_from_m_s(float value_m_s)
+{
+    return to_integer(limited(value_m_s, 4.0f), TWO_POW_27, TWO_POW_15);
+}
+
+float saddle_speed_to_m_s(saddle_fixed_t speed)
+{
+    const int64_t in_range = limited_integer(speed, SPEED_MAX - 1);
+    return (float)(int32_t)(in_range / ((int64_t)1 << 13)) * (1.0f / 536870912.0f);
+}
+
+saddle_fixed_t saddle_speed_change(float rate_m_s2, uint32_t dt_us)
+{
+    const int32_t rate = (int32_t)(limited(rate_m_s2, RATE_MAX_M_S2) * TWO_POW_27);
+    const int64_t product = rate * (int64_t)(dt_us < DT_MAX_US ? dt_us : DT_MAX_US);
+    const int64_t upper = product / ((int64_t)1 << 27);
+    const int64_t lower = product - upper * ((int64_t)1 << 27);
+    return upper * SPEED_PER_2_POW_MINUS_27_UM_S / ((int64_t)1 << 9) +
+           lower * SPEED_PER_2_POW_MINUS_27_UM_S / ((int64_t)1 << 36);
+}
+
+saddle_fixed_t saddle_speed_times_s(saddle_fixed_t speed, float time_s)
+{
+    const float in_range_s = time_s > 0.0f ? limited(time_s, TIME_MAX_S) : 0.0f;
+    const int64_t in_range = limited_integer(speed, SPEED_MAX);
+    const int64_t time_q31 = (int64_t)(uint32_t)(in_range_s * TWO_POW_31);
+    const int64_t upper = in_range / ((int64_t)1 << 21);
+    const int64_t lower = in_range - upper * ((int64_t)1 << 21);
+    const int64_t way_q42_m =
+        time_q31 * upper / ((int64_t)1 << 10) + time_q31 * lower / ((int64_t)1 << 31);
+    return limited_integer(way_q42_m, (int64_t)2 << 42) * 1000000;
+}
+
+saddle_fixed_t saddle_position_sum(saddle_fixed_t a, saddle_fixed_t b)
+{
+    const int64_t x = limited_integer(a, POSITION_MAX);
+    const int64_t y = limited_integer(b, POSITION_MAX);
+    if (y > 0) {
+        return x > POSITION_MAX - y ? POSITION_MAX : x + y;
+    }
+    return x < -POSITION_MAX - y ? -POSITION_MAX : x + y;
+}

@@ -1,0 +1,43 @@
+#include "motion/foot_swing.h"
+
+#include "math/elementary.h"
+
+#include <stdbool.h>
+
+saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle_sample_t lateral)
+{
+    const float rise_m = lateral.value;
+    const float across_m = swing->line_y_m < 0.0f ? -swing->path_width_m : swing->path_width_m;
+    saddle_sample_t line;
+    line.value = across_m * x_m / rise_m;
+    line.slope = across_m * (rise_m - lateral.slope * x_m) / (rise_m * rise_m);
+    return line;
+}
+
+/* Rises and sinks by one minimum-jerk profile each. air: 0 at lift-off, 1 at landing. */
+static void swing_height(float air, float air_rate_hz, float clearance_m,
+                         saddle_swing_state_t *foot)
+{
+    const bool rising = air < 0.5f;
+    const float profile = 2.0f * (rising ? air : 1.0f - air);
+    const float rate_hz = 2.0f * (rising ? air_rate_hz : -air_rate_hz);
+    foot->position_m.z = clearance_m * saddle_min_jerk(profile);
+    foot->velocity_m_s.z = clearance_m * saddle_min_jerk_slope(profile) * rate_hz;
+}
+
+void saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
+                       saddle_sample_t lateral, float speed_m_s, float rate_hz,
+                       saddle_swing_state_t *foot)
+{
+    const float duration = swing->land_progress - swing->lift_progress;
+    const float air = saddle_clamp((progress - swing->lift_progress) / duration, 0.0f, 1.0f);
+    const float air_rate_hz = rate_hz / duration;
+    const float fade = 1.0f - saddle_min_jerk(2.0f * air);
+    const float fade_rate_hz = -2.0f * saddle_min_jerk_slope(2.0f * air) * air_rate_hz;
+    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral);
+    foot->position_m.x = line.value + swing->offset_m.x * fade;
+    foot->position_m.y = swing->line_y_m + swing->offset_m.y * fade;
+    foot->velocity_m_s.x = line.slope * speed_m_s + swing->offset_m.x * fade_rate_hz;
+    foot->velocity_m_s.y = swing->offset_m.y * fade_rate_hz;
+    swing_height(air, air_rate_hz, swing->clearance_m, foot);
+}

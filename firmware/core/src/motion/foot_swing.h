@@ -1,0 +1,23 @@
+/** The swing foot: its CoP stays on the line through the stance CoP and the CoM. */
+#ifndef SADDLEWALK_FOOT_SWING_H
+#define SADDLEWALK_FOOT_SWING_H
+
+#include <saddlewalk/private/context.h>
+
+typedef struct {
+    saddle_vec3_t position_m;   /**< CoP, from the stance CoP; z from the ground */
+    saddle_vec3_t velocity_m_s;
+} saddle_swing_state_t;
+
+/** [E9] x of the point where the line from the stance CoP through the reference CoM meets the line
+ *  of the path's other foot, path_width_m away, and dx/d(CoM x). x_m is the CoM's, lateral its
+ *  reference. */
+saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle_sample_t lateral);
+
+/** [E9] [E10] The foot at a progress; x_m, lateral as above; speed_m_s that of the CoM and
+ *  rate_hz that of the progress. */
+void saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
+                       saddle_sample_t lateral, float speed_m_s, float rate_hz,
+                       saddle_swing_state_t *foot);
+
+#endif

@@ -1,0 +1,491 @@
+#include "motion/gait_cycle.h"
+
+#include "math/blend.h"
+#include "math/elementary.h"
+#include "math/fixed.h"
+#include "math/vec2.h"
+#include "model/gait_model.h"
+#include "motion/com_path.h"
+#include "motion/speed_profile.h"
+
+#include <math.h>
+
+/* A quarter lasts at least 36 ms, [E6] at its extremes, and a tick at most 250 ms. */
+#define VIA_POINTS_A_TICK 8
+#define SPEED_MIN_M_S 0.01f /* slower transitions are shaped as if this fast */
+
+/* A landing is taken over in the first half of the quarter after it and the first quarter of the
+ * swing, and only if it leaves the CoM this far behind the foot and the feet this far apart. */
+#define LANDING_AHEAD_MIN_M 0.02f
+#define LANDING_WIDTH_MIN_M 0.02f
+#define LANDING_AIR_MAX 0.25f
+
+/* A longer way to the foot via point, of the planned one, is no misplaced landing: at the planned
+ * path's slope the CoM would leave the feet sideways. */
+#define LANDING_STRETCH_MAX 2.0f
+
+/* The CoM stays within this share of the pendulum's length from the stance foot, squared. */
+#define REACH_SHARE 0.8f
+
+bool saddle_cycle_before_landing(const saddle_cycle_t *cycle)
+{
+    return cycle->phase % 2u == 0u;
+}
+
+static saddle_side_t stance_of_phase(uint8_t phase)
+{
+    return phase == 0u || phase == 3u ? SADDLE_LEFT : SADDLE_RIGHT;
+}
+
+static saddle_sample_t sum(saddle_sample_t a, saddle_sample_t b)
+{
+    const saddle_sample_t total = {a.value + b.value, a.slope + b.slope};
+    return total;
+}
+
+static saddle_sample_t lateral_reference(const saddle_cycle_t *cycle, float x_m)
+{
+    return saddle_com_lateral(&cycle->quarter, saddle_quarter_angle_rad(&cycle->quarter, x_m));
+}
+
+static saddle_sample_t vertical_reference(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                                          float x_m)
+{
+    return saddle_cycloid(model, &cycle->quarter, saddle_quarter_angle_rad(&cycle->quarter, x_m));
+}
+
+static saddle_sample_t lateral_at(const saddle_cycle_t *cycle, float x_m)
+{
+    return sum(lateral_reference(cycle, x_m), saddle_blend_at(&cycle->lateral, x_m));
+}
+
+/* For the cycloid; the other ankles have no height of their own to go on from. */
+static saddle_sample_t vertical_at(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                                   float x_m)
+{
+    if (model->config.ankle != SADDLE_ANKLE_CYCLOID) {
+        const saddle_sample_t none = {0.0f, 0.0f};
+        return none;
+    }
+    return sum(vertical_reference(cycle, model, x_m), saddle_blend_at(&cycle->vertical, x_m));
+}
+
+/* Give the running quarter a new shape; what it changes at the CoM fades out until its end. */
+static void reshape(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_quarter_t quarter,
+                    saddle_sample_t lateral, saddle_sample_t vertical)
+{
+    const float x_m = saddle_position_to_m(cycle->position);
+    const bool before = saddle_cycle_before_landing(cycle);
+    const float rest_m = before ? quarter.length_m - x_m : -x_m;
+    cycle->quarter = quarter;
+    cycle->swing.path_width_m = quarter.width_m;
+    cycle->lateral = saddle_blend(lateral, lateral_reference(cycle, x_m), x_m, rest_m);
+    if (model->config.ankle == SADDLE_ANKLE_CYCLOID) {
+        cycle->vertical =
+            saddle_blend(vertical, vertical_reference(cycle, model, x_m), x_m, rest_m);
+    } else {
+        cycle->transition = saddle_transition(
+            model, &cycle->quarter, before ? cycle->next_heel_strike_rad : cycle->heel_strike_rad);
+    }
+}
+
+/* The foot via point: the next step's length follows from the speed now. */
+static void pass_foot(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_fixed_t speed)
+{
+    const saddle_side_t stance = cycle->quarter.stance;
+    const saddle_sample_t lateral = lateral_at(cycle, 0.0f);
+    const saddle_sample_t vertical = vertical_at(cycle, model, 0.0f);
+    cycle->phase = (uint8_t)((cycle->phase + 1u) % 4u);
+    cycle->stride_count += cycle->phase == 0u ? 1u : 0u;
+    cycle->quarter_length = saddle_half_step(model, saddle_other_side(stance), speed);
+    reshape(cycle, model,
+            saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
+                           saddle_magnitude(cycle->swing.line_y_m), saddle_speed_to_m_s(speed)),
+            lateral, vertical);
+}
+
+/* The line on which the next swing foot travels, from the new stance CoP: at its place beside the
+ * walking line, but between half and twice a step width from the stance foot. A last swing lands as
+ * wide as one stands, so that the CoM stays nearer to the leg that carries it. */
+static float swing_line_y_m(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                            saddle_side_t foot, float speed_m_s)
+{
+    const float then_m_s = cycle->last_swing ? 0.0f : speed_m_s;
+    const float line_y_m = saddle_landing_y_m(model, foot, then_m_s) - cycle->stance_y_m;
+    const float width_m = saddle_step_width_m(model, then_m_s);
+    const float outward = saddle_outward(foot);
+    return outward * saddle_clamp(outward * line_y_m, 0.5f * width_m, 2.0f * width_m);
+}
+
+/* Let the other foot, at lifted_m, begin a swing: what it is off its line fades out. */
+static void lift_off(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t lifted_m,
+                     float speed_m_s)
+{
+    const saddle_side_t foot = saddle_other_side(cycle->quarter.stance);
+    const float x_m = saddle_position_to_m(cycle->position);
+    saddle_swing_t *swing = &cycle->swing;
+    swing->lift_progress = saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f;
+    swing->land_progress = cycle->last_swing ? 0.5f : 1.0f;
+    swing->clearance_m = model->config.swing_clearance_m;
+    swing->line_y_m = swing_line_y_m(cycle, model, foot, speed_m_s);
+    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral_reference(cycle, x_m));
+    swing->offset_m.x = lifted_m.x - line.value;
+    swing->offset_m.y = lifted_m.y - swing->line_y_m;
+}
+
+static float shaping_speed_m_s(const saddle_cycle_t *cycle)
+{
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    return speed_m_s > SPEED_MIN_M_S ? speed_m_s : SPEED_MIN_M_S;
+}
+
+static float length_m(float x_m, float y_m, float z_m)
+{
+    return sqrtf(x_m * x_m + y_m * y_m + z_m * z_m);
+}
+
+/* The ankles of the erf and rigid models at the saddle via point. */
+static saddle_ankle_angles_t angles_at_saddle(const saddle_cycle_t *cycle,
+                                              const saddle_model_t *model)
+{
+    const float lead_s = cycle->transition.heel_strike_lead_m / shaping_speed_m_s(cycle);
+    return saddle_ankle_angles(model, &cycle->transition, lead_s);
+}
+
+/* The angle at which the stance foot leaves the ground, at the saddle via point. */
+static float toe_off_angle_rad(const saddle_cycle_t *cycle, const saddle_model_t *model, float y_m,
+                               float z_m)
+{
+    if (model->config.ankle != SADDLE_ANKLE_CYCLOID) {
+        return angles_at_saddle(cycle, model).toe_off_rad;
+    }
+    saddle_ankle_state_t ankle;
+    saddle_ankle_for_leg(model, length_m(cycle->quarter.length_m, y_m, z_m), true, &ankle);
+    return ankle.toe_off_rad;
+}
+
+/* The saddle via point: the swing foot has landed and carries from now on. */
+static void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_fixed_t speed,
+                        float heel_strike_rad)
+{
+    const float length_m = cycle->quarter.length_m;
+    const float speed_m_s = saddle_speed_to_m_s(speed);
+    const float step_y_m = cycle->swing.line_y_m;
+    const saddle_vec2_t lifted_m = {-2.0f * length_m, -step_y_m};
+    saddle_sample_t lateral = lateral_at(cycle, length_m);
+    const saddle_sample_t vertical = vertical_at(cycle, model, length_m);
+    cycle->lift_pitch_rad = toe_off_angle_rad(cycle, model, lateral.value, vertical.value);
+    lateral.value -= step_y_m;
+    cycle->last_step_m.x = -lifted_m.x;
+    cycle->last_step_m.y = step_y_m;
+
+    cycle->phase++;
+    cycle->step_count++;
+    cycle->position = -cycle->quarter_length;
+    cycle->origin_x_nm += 2 * saddle_position_to_nm(cycle->quarter_length);
+    cycle->stance_y_m += step_y_m;
+    cycle->heel_strike_rad = cycle->next_heel_strike_rad;
+    cycle->next_heel_strike_rad = heel_strike_rad;
+    reshape(cycle, model,
+            saddle_quarter(model, saddle_other_side(cycle->quarter.stance), length_m,
+                           saddle_magnitude(step_y_m), speed_m_s),
+            lateral, vertical);
+    lift_off(cycle, model, lifted_m, speed_m_s);
+}
+
+void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
+                        const saddle_cycle_start_t *start)
+{
+    const saddle_side_t stance = stance_of_phase(start->phase);
+    const float speed_m_s = saddle_speed_to_m_s(start->speed);
+    const saddle_sample_t lateral = {start->com_y_m, 0.0f};
+    const saddle_sample_t vertical = {start->com_z_m, 0.0f};
+    const bool beside = start->phase % 2u == 0u;
+    cycle->profile.speed = start->speed;
+    cycle->heel_strike_rad = 0.0f;
+    cycle->next_heel_strike_rad = start->heel_strike_rad;
+    cycle->phase = start->phase;
+    cycle->stance_y_m = start->stance_y_m;
+    cycle->last_swing = false;
+    cycle->lift_pitch_rad = 0.0f;
+    cycle->last_step_m.x = -start->other_m.x;
+    cycle->last_step_m.y = -start->other_m.y;
+    cycle->quarter_length = beside
+                                ? saddle_half_step(model, saddle_other_side(stance), start->speed)
+                                : saddle_position_from_m(-0.5f * start->other_m.x);
+    cycle->position = beside ? 0 : -cycle->quarter_length;
+    cycle->quarter = saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
+                                    saddle_magnitude(start->other_m.y), speed_m_s);
+    cycle->swing.path_width_m = cycle->quarter.width_m;
+    lift_off(cycle, model, start->other_m, speed_m_s);
+    if (beside) {
+        cycle->quarter = saddle_quarter(model, stance, cycle->quarter.length_m,
+                                        saddle_magnitude(cycle->swing.line_y_m), speed_m_s);
+    }
+    reshape(cycle, model, cycle->quarter, lateral, vertical);
+    if (start->under_way) {
+        cycle->swing.lift_progress = 0.0f;
+        cycle->lateral.length_m = 0.0f;
+        cycle->vertical.length_m = 0.0f;
+    }
+}
+
+void saddle_cycle_stand(saddle_cycle_t *cycle, saddle_side_t stance, float stance_y_m)
+{
+    cycle->quarter.stance = stance;
+    cycle->stance_y_m = stance_y_m;
+}
+
+void saddle_cycle_set_pace(saddle_cycle_t *cycle, float speed_m_s, float rate_m_s2)
+{
+    cycle->profile.target = saddle_speed_from_m_s(speed_m_s);
+    cycle->profile.rate_m_s2 = rate_m_s2;
+}
+
+void saddle_cycle_set_last_swing(saddle_cycle_t *cycle, bool last_swing)
+{
+    cycle->last_swing = last_swing;
+}
+
+float saddle_cycle_way_to_via_point_m(const saddle_cycle_t *cycle)
+{
+    const saddle_fixed_t end = saddle_cycle_before_landing(cycle) ? cycle->quarter_length : 0;
+    return saddle_position_to_m(end - cycle->position);
+}
+
+/* Time after which a last swing has come to rest beside the stance foot. */
+static bool comes_to_rest(const saddle_cycle_t *cycle, uint32_t dt_us, uint32_t *rest_us)
+{
+    if (!cycle->last_swing || saddle_cycle_before_landing(cycle) || cycle->profile.target != 0) {
+        return false;
+    }
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    const float way_m = saddle_cycle_way_to_via_point_m(cycle);
+    const float time_us = speed_m_s > 0.0f ? 2.0e6f * way_m / speed_m_s : 0.0f;
+    if (time_us > (float)dt_us) {
+        return false;
+    }
+    *rest_us = dt_us - (uint32_t)time_us;
+    return true;
+}
+
+uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model,
+                              float heel_strike_rad, uint32_t dt_us, bool *arrived)
+{
+    uint32_t rest_us = 0;
+    *arrived = comes_to_rest(cycle, dt_us, &rest_us);
+    if (*arrived) {
+        cycle->profile.speed = 0;
+        cycle->position = 0;
+        return rest_us;
+    }
+    const saddle_speed_profile_t before = cycle->profile;
+    float way_m = 0.0f;
+    saddle_fixed_t way = saddle_profile_advance(&cycle->profile, dt_us);
+    for (int i = 0; i < VIA_POINTS_A_TICK; i++) {
+        const saddle_fixed_t end = saddle_cycle_before_landing(cycle) ? cycle->quarter_length : 0;
+        const saddle_fixed_t to_end = end - cycle->position;
+        if (way < to_end || (cycle->last_swing && !saddle_cycle_before_landing(cycle))) {
+            break;
+        }
+        way -= to_end;
+        way_m += saddle_position_to_m(to_end);
+        cycle->position = end;
+        const saddle_fixed_t speed = saddle_profile_speed_after(&before, way_m);
+        if (saddle_cycle_before_landing(cycle)) {
+            pass_saddle(cycle, model, speed, heel_strike_rad);
+        } else {
+            pass_foot(cycle, model, speed);
+        }
+    }
+    cycle->position += way;
+    if (!saddle_cycle_before_landing(cycle) && cycle->position > 0) {
+        cycle->position = 0; /* a last swing stays beside the stance foot */
+        cycle->profile.speed = 0;
+    }
+    return 0;
+}
+
+/* Progress of the running quarter, [0, 1]. */
+static float quarter_progress(const saddle_cycle_t *cycle, float x_m)
+{
+    const float quarter_m = cycle->quarter.length_m;
+    const float since_via_m = saddle_cycle_before_landing(cycle) ? x_m : quarter_m + x_m;
+    return saddle_clamp(since_via_m / quarter_m, 0.0f, 1.0f);
+}
+
+/* Progress of the swing under way: a quarter is half of it. */
+static float swing_progress(const saddle_cycle_t *cycle, float progress)
+{
+    return 0.5f * progress + (saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f);
+}
+
+static void swing_foot(const saddle_cycle_t *cycle, float x_m, saddle_sample_t reference,
+                       float progress, saddle_swing_state_t *foot)
+{
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    saddle_foot_swing(&cycle->swing, progress, x_m, reference, speed_m_s,
+                      0.5f * speed_m_s / cycle->quarter.length_m, foot);
+}
+
+/* Progress of the running swing through the air, in the quarter after a landing. */
+static float air_after_landing(const saddle_cycle_t *cycle, float x_m)
+{
+    return 0.5f * (1.0f + x_m / cycle->quarter.length_m) / cycle->swing.land_progress;
+}
+
+/* Can the walk go on from a landing after step_m, with the CoM at com_m from the stance foot? */
+static bool landing_usable(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                           saddle_vec2_t step_m, saddle_vec2_t com_m)
+{
+    const float outward = saddle_outward(cycle->quarter.stance);
+    const float reach_m2 = REACH_SHARE * model->body.pendulum_m * model->body.pendulum_m;
+    return saddle_in_range(-com_m.x, LANDING_AHEAD_MIN_M, model->body.half_step_max_m) &&
+           saddle_in_range(outward * step_m.y, LANDING_WIDTH_MIN_M,
+                           2.0f * model->config.step_width_slow_m) &&
+           saddle_vec2_dot(com_m, com_m) < reach_m2;
+}
+
+/* The measured landing changed the line: what the swing foot is off it from here on fades out. */
+static void redirect_swing(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t foot_m,
+                           float speed_m_s)
+{
+    const float x_m = saddle_position_to_m(cycle->position);
+    const float fade = 1.0f - saddle_min_jerk(2.0f * air_after_landing(cycle, x_m));
+    saddle_swing_t *swing = &cycle->swing;
+    swing->line_y_m =
+        swing_line_y_m(cycle, model, saddle_other_side(cycle->quarter.stance), speed_m_s);
+    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral_reference(cycle, x_m));
+    swing->offset_m.x = (foot_m.x - line.value) / fade;
+    swing->offset_m.y = (foot_m.y - swing->line_y_m) / fade;
+}
+
+/* A last swing that ends after a way of way_m comes to rest no harder than allowed. */
+static bool can_end(const saddle_cycle_t *cycle, const saddle_model_t *model, float way_m)
+{
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    return !cycle->last_swing ||
+           saddle_can_brake(speed_m_s, model->config.acceleration_m_s2, way_m);
+}
+
+bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m)
+{
+    const saddle_side_t stance = cycle->quarter.stance;
+    const float dx_m = step_m.x - cycle->last_step_m.x;
+    const float dy_m = step_m.y - cycle->last_step_m.y;
+    const float old_x_m = saddle_position_to_m(cycle->position);
+    if (saddle_cycle_before_landing(cycle) || -2.0f * old_x_m < cycle->quarter.length_m ||
+        air_after_landing(cycle, old_x_m) > LANDING_AIR_MAX) {
+        return false;
+    }
+    const float x_m = old_x_m - dx_m;
+    const float length_m = cycle->quarter.length_m * x_m / old_x_m;
+    saddle_sample_t lateral = lateral_at(cycle, old_x_m);
+    lateral.value -= dy_m;
+    if (x_m < LANDING_STRETCH_MAX * old_x_m ||
+        length_m > saddle_larger(model->body.half_step_max_m, cycle->quarter.length_m) ||
+        !landing_usable(cycle, model, step_m, (saddle_vec2_t){x_m, lateral.value}) ||
+        (x_m > old_x_m && !can_end(cycle, model, -x_m))) {
+        return false;
+    }
+    saddle_swing_state_t foot;
+    swing_foot(cycle, old_x_m, lateral_reference(cycle, old_x_m),
+               swing_progress(cycle, quarter_progress(cycle, old_x_m)), &foot);
+    const saddle_sample_t vertical = vertical_at(cycle, model, old_x_m);
+    const saddle_vec2_t swing_m = {foot.position_m.x - dx_m, foot.position_m.y - dy_m};
+    cycle->position = saddle_position_from_m(x_m);
+    cycle->quarter_length = saddle_position_from_m(length_m);
+    cycle->origin_x_nm += (int64_t)(int32_t)(1.0e9f * dx_m);
+    cycle->stance_y_m += dy_m;
+    cycle->last_step_m = step_m;
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    reshape(cycle, model,
+            saddle_quarter(model, stance, length_m, saddle_magnitude(step_m.y), speed_m_s), lateral,
+            vertical);
+    redirect_swing(cycle, model, swing_m, speed_m_s);
+    return true;
+}
+
+/* The ankles of the erf and rigid models, and the height they give. */
+static void erf_height(const saddle_cycle_t *cycle, const saddle_model_t *model, float to_saddle_m,
+                       float speed_m_s, saddle_pose_t *pose)
+{
+    const float shaped_m_s = shaping_speed_m_s(cycle);
+    const bool before = saddle_cycle_before_landing(cycle);
+    const float time_s = (before ? -to_saddle_m : to_saddle_m) / shaped_m_s;
+    const saddle_vec2_t offset_m = {pose->com_m.x, pose->com_m.y};
+    const saddle_vec2_t velocity_m_s = {pose->com_velocity_m_s.x, pose->com_velocity_m_s.y};
+    saddle_ankle(model, &cycle->transition,
+                 time_s + cycle->transition.heel_strike_lead_m / shaped_m_s, before, &pose->ankle);
+    pose->ankle_limited = cycle->transition.toe_off_limited || pose->ankle.limited;
+    pose->ankle.leg_rate_m_s *= speed_m_s / shaped_m_s;
+    saddle_com_height(&pose->ankle, offset_m, velocity_m_s, &pose->com_m.z,
+                      &pose->com_velocity_m_s.z);
+}
+
+/* The cycloid's height, and the ankles that give it. */
+static void cycloid_height(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                           float speed_m_s, saddle_pose_t *pose)
+{
+    const saddle_sample_t vertical = vertical_at(cycle, model, pose->com_m.x);
+    const saddle_vec3_t *com = &pose->com_m;
+    pose->com_m.z = vertical.value;
+    pose->com_velocity_m_s.z = vertical.slope * speed_m_s;
+    pose->ankle_limited = !saddle_ankle_for_leg(model, length_m(com->x, com->y, com->z),
+                                                saddle_cycle_before_landing(cycle), &pose->ankle);
+}
+
+/* The foot angle with which the swing foot will land, heel first. */
+static float landing_angle_rad(const saddle_cycle_t *cycle, const saddle_model_t *model)
+{
+    if (model->config.ankle != SADDLE_ANKLE_CYCLOID) {
+        return angles_at_saddle(cycle, model).heel_strike_rad;
+    }
+    const saddle_quarter_t *quarter = &cycle->quarter;
+    const float z_m = saddle_cycloid(model, quarter, SADDLE_HALF_PI).value;
+    saddle_ankle_state_t ankle;
+    saddle_ankle_for_leg(model, length_m(quarter->length_m, 0.5f * quarter->width_m, z_m), false,
+                         &ankle);
+    return ankle.heel_strike_rad;
+}
+
+/* The sole turns flat until mid-swing and to the landing angle after it. */
+static float swing_pitch_rad(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                             float progress)
+{
+    if (!saddle_cycle_before_landing(cycle)) {
+        return cycle->lift_pitch_rad * (1.0f - saddle_min_jerk(2.0f * progress));
+    }
+    return -landing_angle_rad(cycle, model) * saddle_min_jerk(2.0f * progress - 1.0f);
+}
+
+float saddle_cycle_com_y_m(const saddle_cycle_t *cycle)
+{
+    return lateral_at(cycle, saddle_position_to_m(cycle->position)).value;
+}
+
+void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                       saddle_pose_t *pose)
+{
+    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    const float x_m = saddle_position_to_m(cycle->position);
+    const float quarter_m = cycle->quarter.length_m;
+    const bool before = saddle_cycle_before_landing(cycle);
+    const saddle_sample_t reference = lateral_reference(cycle, x_m);
+    const saddle_sample_t lateral = sum(reference, saddle_blend_at(&cycle->lateral, x_m));
+    const float to_saddle_m = before ? quarter_m - x_m : quarter_m + x_m;
+    pose->progress = quarter_progress(cycle, x_m);
+    pose->com_m.x = x_m;
+    pose->com_m.y = lateral.value;
+    pose->com_velocity_m_s.x = speed_m_s;
+    pose->com_velocity_m_s.y = lateral.slope * speed_m_s;
+    if (model->config.ankle == SADDLE_ANKLE_CYCLOID) {
+        cycloid_height(cycle, model, speed_m_s, pose);
+    } else {
+        erf_height(cycle, model, to_saddle_m, speed_m_s, pose);
+    }
+    const float progress = swing_progress(cycle, pose->progress);
+    swing_foot(cycle, x_m, reference, progress, &pose->swing);
+    pose->stance_pitch_rad = before ? pose->ankle.toe_off_rad : -pose->ankle.heel_strike_rad;
+    pose->swing_pitch_rad = swing_pitch_rad(cycle, model, progress);
+}

@@ -1,0 +1,39 @@
+/** The walking planner: standing, starting, walking, stopping, over the gait cycle. */
+#ifndef SADDLEWALK_PLANNER_H
+#define SADDLEWALK_PLANNER_H
+
+#include <saddlewalk/private/context.h>
+
+/** Feet as they were measured. */
+typedef struct {
+    bool known;
+    saddle_vec2_t cop_m[2]; /**< in any one frame with x forward and y left */
+    bool contact[2];
+} saddle_feet_t;
+
+/** Standing, feet side by side at the width of slow walking, CoM between them. */
+void saddle_planner_reset(saddle_planner_t *planner, const saddle_model_t *model);
+
+/** Join a steady walk at the left foot via point (theta = 0, Phase0 = 0), at full speed: what the
+ *  paper plans. Returns saddle_limit_t bits. */
+uint32_t saddle_planner_join(saddle_planner_t *planner, const saddle_model_t *model, const saddle_command_t *command);
+
+/** Advance by dt_us; then obey a usable command and take over measured feet. A walk starts from
+ *  measured feet only if both are on the ground and no further apart than a step; else the plan stands
+ *  and says SADDLE_LIMIT_FEET. Returns saddle_limit_t bits. */
+uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_model_t *model, const saddle_command_t *command,
+                               const saddle_feet_t *feet, uint32_t dt_us);
+
+/** Let time pass, nothing else. */
+void saddle_planner_advance(saddle_planner_t *planner, const saddle_model_t *model, uint32_t dt_us);
+
+/** Speed of the walk; 0 while both feet stand. */
+float saddle_planner_speed_m_s(const saddle_planner_t *planner);
+
+/** How far saddle_planner_advance() may go in one call: to the end of the next step, 0.5 s standing. */
+uint32_t saddle_planner_horizon_us(const saddle_planner_t *planner);
+
+/** The plan of the present state. Returns SADDLE_LIMIT_TOE_OFF or 0. */
+uint32_t saddle_planner_write(const saddle_planner_t *planner, const saddle_model_t *model, saddle_plan_t *plan);
+
+#endif

@@ -1,0 +1,28 @@
+/** [E23] Motion along x: the speed goes to its target at a constant rate and stays there. */
+#ifndef SADDLEWALK_SPEED_PROFILE_H
+#define SADDLEWALK_SPEED_PROFILE_H
+
+#include <saddlewalk/private/context.h>
+
+/** Advance by dt_us; returns the way. Exact at constant speed, else to about 1e-10 m. */
+saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t dt_us);
+
+/** The speed after a further way_m >= 0. */
+saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile, float way_m);
+
+/** Whether way_m is enough to come to rest no harder than at rate_m_s2. */
+bool saddle_can_brake(float speed_m_s, float rate_m_s2, float way_m);
+
+/** A profile in floats, to foretell by. */
+typedef struct {
+    float speed_m_s, target_m_s;
+    float acceleration_m_s2; /**< signed, until the target is reached */
+    float change_m;          /**< way on which it is reached */
+} saddle_pace_t;
+
+saddle_pace_t saddle_pace(const saddle_speed_profile_t *profile);
+
+/** Seconds until a further way_m >= 0 is covered, at most SADDLE_TIME_MAX_S. */
+float saddle_pace_time_s(const saddle_pace_t *pace, float way_m);
+
+#endif

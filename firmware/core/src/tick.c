@@ -1,0 +1,260 @@
+#include "balance/comparison.h"
+#include "balance/scores.h"
+#include "balance/supervisor.h"
+#include "math/bytes.h"
+#include "math/rounding.h"
+#include "math/vec2.h"
+#include "model/model.h"
+#include "motion/planner.h"
+#include "sense/plausibility.h"
+#include "sense/safe_state.h"
+
+#include <saddlewalk/saddlewalk.h>
+
+/* Marks a context that saddle_init() has filled. */
+#define INITIALISED 0x5ADD1E00u
+
+/* The largest tick_max_s that is accepted. */
+#define TICK_LIMIT_US 250000u
+
+saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *config)
+{
+    if (context == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    saddle_clear(context, sizeof *context);
+    if (!saddle_rounds_as_written()) {
+        return SADDLE_ERROR_BUILD;
+    }
+    if (config == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    if (saddle_config_check(config) != NULL) {
+        return SADDLE_ERROR_CONFIG;
+    }
+    saddle_model_init(&context->model, config);
+    saddle_planner_reset(&context->planner, &context->model);
+    context->initialised = INITIALISED;
+    return SADDLE_OK;
+}
+
+static saddle_status_t judge_call(const saddle_context_t *context, const saddle_input_t *input)
+{
+    if (context == NULL || input == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    if (context->initialised != INITIALISED) {
+        return SADDLE_ERROR_UNINITIALISED;
+    }
+    if (context->ticked && input->time_us < context->last_time_us) {
+        return SADDLE_ERROR_TIME;
+    }
+    return SADDLE_OK;
+}
+
+static uint32_t sum_us(uint32_t a_us, uint32_t b_us)
+{
+    return b_us < UINT32_MAX - a_us ? a_us + b_us : UINT32_MAX;
+}
+
+/* Time since the last tick, as far as the plan may advance; what it holds has aged by all of it. */
+static uint32_t elapsed_us(saddle_context_t *context, uint64_t time_us, uint32_t *limits)
+{
+    const uint64_t since_us = context->ticked ? time_us - context->last_time_us : 0u;
+    const uint32_t aged_us = since_us < UINT32_MAX ? (uint32_t)since_us : UINT32_MAX;
+    const uint32_t limit_us = context->model.body.tick_max_us;
+    context->last_time_us = time_us;
+    context->ticked = true;
+    context->command_age_us = sum_us(context->command_age_us, aged_us);
+    if (aged_us > limit_us) {
+        *limits |= (uint32_t)SADDLE_LIMIT_TICK_GAP;
+        const float gap_s = (float)aged_us * 1.0e-6f;
+        saddle_supervisor_gap(&context->supervisor, gap_s);
+        saddle_safe_state_gap(&context->safe_state, &context->model, gap_s);
+        return limit_us;
+    }
+    return aged_us;
+}
+
+/* The last usable command holds. */
+static uint32_t take_command(saddle_context_t *context, const saddle_input_t *input)
+{
+    uint32_t faults = 0;
+    if (saddle_command_usable(&input->command)) {
+        context->command = input->command;
+        context->command_age_us = input->command_age_us;
+    } else {
+        faults |= (uint32_t)SADDLE_FAULT_COMMAND;
+    }
+    if ((float)context->command_age_us > context->model.body.command_max_age_us) {
+        faults |= (uint32_t)SADDLE_FAULT_COMMAND_STALE;
+    }
+    return faults;
+}
+
+/* The feet for the planner: what the supervisor would use of them. */
+static saddle_feet_t measured_feet(const saddle_measurement_t *measurement, uint32_t faults)
+{
+    saddle_feet_t feet;
+    feet.known = (faults & SADDLE_FAULTS_FEET) == 0u;
+    for (int side = 0; side < 2; side++) {
+        feet.cop_m[side] = measurement->foot[side].cop_m;
+        feet.contact[side] = measurement->foot[side].contact;
+    }
+    return feet;
+}
+
+/* Where the wearer is to be. */
+static saddle_intent_t intent_of(const saddle_plan_t *plan)
+{
+    const saddle_vec3_t stance_m = plan->foot_m[plan->support];
+    const saddle_vec3_t other_m = plan->foot_m[saddle_other_side((saddle_side_t)plan->support)];
+    const bool walking = plan->speed_m_s > 0.0f;
+    const float share = walking ? 0.0f : 0.5f;
+    const saddle_vec2_t origin_m = {stance_m.x + share * (other_m.x - stance_m.x),
+                                    stance_m.y + share * (other_m.y - stance_m.y)};
+    saddle_intent_t intent;
+    intent.leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u;
+    intent.walking = walking;
+    intent.step.stance = (saddle_side_t)plan->support;
+    intent.step.speed_m_s = plan->speed_m_s;
+    intent.step.half_behind_m = 0.5f * plan->step_length_m;
+    intent.step.width_behind_m = plan->step_width_m;
+    intent.step.landing_m.x = plan->landing_m.x;
+    intent.step.landing_m.y = plan->landing_m.y - stance_m.y;
+    intent.com.com_m.x = plan->com_m.x - origin_m.x;
+    intent.com.com_m.y = plan->com_m.y - origin_m.y;
+    intent.com.velocity_m_s.x = plan->com_velocity_m_s.x;
+    intent.com.velocity_m_s.y = plan->com_velocity_m_s.y;
+    return intent;
+}
+
+/* The plan under the command, or under a stand where the inputs are lost. */
+static void plan_walk(saddle_context_t *context, const saddle_input_t *input, uint32_t faults,
+                      bool stop, uint32_t dt_us, saddle_output_t *output)
+{
+    static const saddle_command_t stand = {(uint8_t)SADDLE_COMMAND_STAND, 0.0f, 0.0f};
+    const saddle_feet_t feet = measured_feet(&input->measurement, faults);
+    output->limits |= stop ? (uint32_t)SADDLE_LIMIT_SAFE_STOP : 0u;
+    output->limits |= saddle_planner_update(&context->planner, &context->model,
+                                            stop ? &stand : &context->command, &feet, dt_us);
+    output->limits |= saddle_planner_write(&context->planner, &context->model, &output->plan);
+}
+
+/* The measured posture against the plan. */
+static void supervise(saddle_context_t *context, const saddle_input_t *input, uint32_t faults,
+                      float dt_s, saddle_output_t *output)
+{
+    const saddle_intent_t intent = intent_of(&output->plan);
+    output->faults |=
+        saddle_supervisor_update(&context->supervisor, &context->model, &input->measurement, faults,
+                                 dt_s, &intent, &output->scores, &output->verdict);
+}
+
+saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
+                            saddle_output_t *output)
+{
+    if (output == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    const saddle_status_t status = judge_call(context, input);
+    if (status != SADDLE_OK) {
+        saddle_clear(output, sizeof *output);
+        output->status = status;
+        return status;
+    }
+    output->status = SADDLE_OK;
+    output->limits = 0;
+    const uint32_t dt_us = elapsed_us(context, input->time_us, &output->limits);
+    const float dt_s = (float)dt_us * 1.0e-6f;
+    const uint32_t faults =
+        saddle_measurement_check(&context->plausibility, &context->model, &input->measurement,
+                     saddle_planner_speed_m_s(&context->planner), dt_s);
+    output->faults = take_command(context, input);
+    const bool stop = saddle_safe_state_update(&context->safe_state, &context->model,
+                                               faults | output->faults, dt_s);
+    plan_walk(context, input, faults, stop, dt_us, output);
+    supervise(context, input, faults, dt_s, output);
+    return SADDLE_OK;
+}
+
+saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *command)
+{
+    if (context == NULL || command == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    if (context->initialised != INITIALISED) {
+        return SADDLE_ERROR_UNINITIALISED;
+    }
+    if (command->mode != (uint8_t)SADDLE_COMMAND_WALK || !saddle_command_usable(command) ||
+        !(command->speed_m_s > 0.0f)) {
+        return SADDLE_ERROR_COMMAND;
+    }
+    context->command = *command;
+    saddle_planner_join(&context->planner, &context->model, command);
+    return SADDLE_OK;
+}
+
+/* Beyond a tick, tick by tick: within the range of fixed point. */
+static void advance_far(saddle_planner_t *planner, const saddle_context_t *context, uint32_t dt_us)
+{
+    uint32_t rest_us = dt_us;
+    while (rest_us > TICK_LIMIT_US) {
+        saddle_planner_advance(planner, &context->model, TICK_LIMIT_US);
+        rest_us -= TICK_LIMIT_US;
+    }
+    saddle_planner_advance(planner, &context->model, rest_us);
+}
+
+saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
+                               saddle_plan_t *plan)
+{
+    if (plan == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    saddle_clear(plan, sizeof *plan);
+    if (context == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    if (context->initialised != INITIALISED) {
+        return SADDLE_ERROR_UNINITIALISED;
+    }
+    if (!context->ticked || time_us < context->last_time_us ||
+        time_us - context->last_time_us > saddle_planner_horizon_us(&context->planner)) {
+        return SADDLE_ERROR_TIME;
+    }
+    saddle_planner_t planner;
+    saddle_copy(&planner, &context->planner, sizeof planner);
+    advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
+    saddle_planner_write(&planner, &context->model, plan);
+    return SADDLE_OK;
+}
+
+saddle_status_t saddle_score_plan(const saddle_context_t *context, const saddle_plan_t *plan,
+                                  saddle_scores_t *scores)
+{
+    if (scores == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    saddle_clear(scores, sizeof *scores);
+    if (context == NULL || plan == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    if (context->initialised != INITIALISED) {
+        return SADDLE_ERROR_UNINITIALISED;
+    }
+    saddle_posture_t posture;
+    posture.com_m.x = plan->com_m.x;
+    posture.com_m.y = plan->com_m.y;
+    posture.com_velocity_m_s.x = plan->com_velocity_m_s.x;
+    posture.com_velocity_m_s.y = plan->com_velocity_m_s.y;
+    for (int side = 0; side < 2; side++) {
+        posture.cop_m[side].x = plan->foot_m[side].x;
+        posture.cop_m[side].y = plan->foot_m[side].y;
+    }
+    posture.v_comp_m_s = plan->speed_m_s;
+    posture.half_step_m = 0.5f * plan->step_length_m;
+    posture.known = plan->valid ? (uint32_t)SADDLE_KNOWN_ALL : 0u;
+    saddle_score_posture(&context->model, &posture, scores);
+    return SADDLE_OK;
+}

@@ -1,0 +1,144 @@
+/** Fixed point against integers and doubles, to the ends of its range. */
+#include "core_test.h"
+
+#include "math/fixed.h"
+
+/* 2^42: units of speed in 1 m/s, of position in 1 um. */
+static const double UNITS = 4398046511104.0;
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+static double metres(saddle_fixed_t position)
+{
+    return (double)position / (1e6 * UNITS);
+}
+
+static void test_speed_is_exact_to_its_unit(void)
+{
+    uint32_t state = 5;
+    for (int i = 0; i < 100000; i++) {
+        const float value = random_in(&state, -4.0f, 4.0f) / (float)(1u << (random_bits(&state) % 24u));
+        const saddle_fixed_t speed = saddle_speed_from_m_s(value);
+        TEST_ASSERT_DOUBLE_WITHIN(1.0, (double)value * UNITS, (double)speed);
+        TEST_ASSERT_DOUBLE_WITHIN(1.9e-9 + 6e-8 * fabs((double)value), (double)value,
+                                  saddle_speed_to_m_s(speed));
+        TEST_ASSERT_TRUE(saddle_speed_from_m_s(-value) == -speed);
+    }
+    TEST_ASSERT_TRUE(saddle_speed_from_m_s(1.5f) == (saddle_fixed_t)(1.5 * UNITS));
+    TEST_ASSERT_TRUE(saddle_speed_from_m_s(0.0f) == 0);
+    const float fastest = nextafterf(4.0f, 0.0f);
+    ASSERT_SAME_FLOAT(fastest, saddle_speed_to_m_s(saddle_speed_from_m_s(fastest)));
+    ASSERT_SAME_FLOAT(-fastest, saddle_speed_to_m_s(saddle_speed_from_m_s(-fastest)));
+}
+
+static void test_position_is_exact_to_a_picometre(void)
+{
+    uint32_t state = 6;
+    for (int i = 0; i < 100000; i++) {
+        const float value = random_in(&state, -2.0f, 2.0f) / (float)(1u << (random_bits(&state) % 24u));
+        const saddle_fixed_t position = saddle_position_from_m(value);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, (double)value, metres(position));
+        /* Three roundings: of the integer, of the unit and of their product. */
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9 + 1.8e-7 * fabs((double)value), (double)value,
+                                  saddle_position_to_m(position));
+        TEST_ASSERT_TRUE(saddle_position_from_m(-value) == -position);
+    }
+    const float furthest = nextafterf(2.0f, 0.0f);
+    TEST_ASSERT_DOUBLE_WITHIN(2.4e-7, (double)furthest,
+                              saddle_position_to_m(saddle_position_from_m(furthest)));
+    TEST_ASSERT_DOUBLE_WITHIN(2.4e-7, -(double)furthest,
+                              saddle_position_to_m(saddle_position_from_m(-furthest)));
+}
+
+static void test_nanometres_are_the_nearest(void)
+{
+    uint32_t state = 7;
+    for (int i = 0; i < 100000; i++) {
+        const float value = random_in(&state, 0.0f, 2.0f);
+        const double nm = 1e9 * metres(saddle_position_from_m(value));
+        TEST_ASSERT_DOUBLE_WITHIN(0.5 + 1e-3, nm,
+                                  (double)saddle_position_to_nm(saddle_position_from_m(value)));
+    }
+    const saddle_fixed_t nanometre = (saddle_fixed_t)(1e-3 * UNITS);
+    TEST_ASSERT_TRUE(saddle_position_to_nm(49 * nanometre / 100) == 0);
+    TEST_ASSERT_TRUE(saddle_position_to_nm(51 * nanometre / 100) == 1);
+    TEST_ASSERT_TRUE(saddle_position_to_nm(1000000 * nanometre) == 1000000);
+}
+
+static void test_way_is_speed_times_time(void)
+{
+    uint32_t state = 8;
+    for (int i = 0; i < 100000; i++) {
+        const float speed = random_in(&state, 0.0f, 4.0f);
+        const float time = random_in(&state, 0.0f, fminf(2.0f, 1.99f / speed));
+        const double way = metres(saddle_speed_times_s(saddle_speed_from_m_s(speed), time));
+        /* Time is counted in 2^-31 s, the way to 2^-41 m. */
+        TEST_ASSERT_DOUBLE_WITHIN(5e-10 * (double)speed + 1e-12, (double)speed * (double)time, way);
+    }
+}
+
+static void test_change_is_rate_times_time(void)
+{
+    uint32_t state = 9;
+    for (int i = 0; i < 100000; i++) {
+        const float wanted = random_in(&state, -15.9f, 15.9f) / (float)(1u << (random_bits(&state) % 8u));
+        const float rate = (float)(int32_t)(wanted * 134217728.0f) / 134217728.0f;
+        const uint32_t dt_us = random_bits(&state) % 10000001u;
+        const double expected = (double)rate * dt_us * 1e-6;
+        TEST_ASSERT_DOUBLE_WITHIN(5e-13 + 2e-10 * fabs(expected), expected,
+                                  (double)saddle_speed_change(rate, dt_us) / UNITS);
+    }
+    TEST_ASSERT_TRUE(saddle_speed_change(0.5f, 0) == 0);
+    TEST_ASSERT_TRUE(saddle_speed_change(0.0f, 80000) == 0);
+}
+
+/* Numbers of any bits: an answer within the range, and nothing that C leaves undefined, which the
+ * sanitizers of make test-sanitize see. */
+static void test_any_bits_give_a_number_within_the_range(void)
+{
+    static const float speeds[] = {4.0f, 1e9f, HUGE_VALF, NAN, 2147483648.0f};
+    const saddle_fixed_t position_max = saddle_position_from_m(2.0f);
+    const saddle_fixed_t speed_max = saddle_speed_from_m_s(4.0f);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0, metres(position_max));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 4.0, (double)speed_max / UNITS);
+    for (size_t i = 0; i < COUNT_OF(speeds); i++) {
+        const bool number = speeds[i] == speeds[i];
+        TEST_ASSERT_TRUE(saddle_speed_from_m_s(speeds[i]) == (number ? speed_max : 0));
+        TEST_ASSERT_TRUE(saddle_speed_from_m_s(-speeds[i]) == (number ? -speed_max : 0));
+        TEST_ASSERT_TRUE(saddle_position_from_m(speeds[i]) == (number ? position_max : 0));
+    }
+    uint32_t state = 11;
+    for (int i = 0; i < 100000; i++) {
+        const float value = float_of_bits(random_bits(&state));
+        const int64_t bits = (int64_t)random_bits(&state) * 2147483648 + (int64_t)random_bits(&state);
+        const saddle_fixed_t any = random_bits(&state) % 2u == 0u ? bits : -bits;
+        const uint32_t dt_us = random_bits(&state);
+        const saddle_fixed_t position = saddle_position_from_m(value);
+        const saddle_fixed_t speed = saddle_speed_from_m_s(value);
+        TEST_ASSERT_TRUE(position >= -position_max && position <= position_max);
+        TEST_ASSERT_TRUE(speed >= -speed_max && speed <= speed_max);
+        const saddle_fixed_t way = saddle_speed_times_s(any, value);
+        TEST_ASSERT_TRUE(way >= -position_max && way <= position_max);
+        const saddle_fixed_t sum = saddle_position_sum(any, position);
+        TEST_ASSERT_TRUE(sum >= -position_max && sum <= position_max);
+        const double change = (double)saddle_speed_change(value, dt_us) / UNITS;
+        TEST_ASSERT_TRUE(fabs(change) <= 160.0);
+        TEST_ASSERT_TRUE(fabsf(saddle_position_to_m(any)) <= 2.1f);
+        TEST_ASSERT_TRUE(fabsf(saddle_speed_to_m_s(any)) <= 4.0f);
+        (void)saddle_position_to_nm(any);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_speed_is_exact_to_its_unit);
+    RUN_TEST(test_position_is_exact_to_a_picometre);
+    RUN_TEST(test_nanometres_are_the_nearest);
+    RUN_TEST(test_way_is_speed_times_time);
+    RUN_TEST(test_change_is_rate_times_time);
+    RUN_TEST(test_any_bits_give_a_number_within_the_range);
+    return UNITY_END();
+}
