@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from saddlewalk.emulation.exoskeleton import Exoskeleton
     from saddlewalk.emulation.wearer import Wearer
     from saddlewalk.logs.recorder import Recorder
+    from saddlewalk.logs.soundness import Check
 
 SPEEDS = [(0.0, 0.0), (1.0, 0.8), (7.0, 1.2), (16.0, 0.0)]
 DURATION_S = 22.0
@@ -36,8 +37,6 @@ PUSH_DIRECTION_DEG = 90.0
 REFRESH_S = 0.2
 LINE_S = 2.0
 LISTEN_S = 0.25
-LATE_SHARE_MAX = 0.05
-Check = tuple[bool, str]  # good, and in words
 
 HOST, EMULATED = "host", "qemu-m4"
 NEW_KEY = ""  # of --command-key without a file
@@ -93,12 +92,14 @@ def _walk(args: argparse.Namespace, config: Any, lcm: Any) -> int:
     from saddlewalk.atomic_write import RunFolder
     from saddlewalk.emulation.exoskeleton import Exoskeleton
     from saddlewalk.emulation.wearer import Noise
+    from saddlewalk.logs.soundness import log_checks, transport_checks, walk_checks
     from saddlewalk.pictures.walk import draw_walk
     from saddlewalk.planning.schedule import schedule_of
     from saddlewalk.transport.authentication import read_key
     from saddlewalk.transport.bus import describe
 
     key = read_key(args.command_key) if args.command_key else None
+    by_can = args.firmware == EMULATED
     wearer = wearer_of(args, config, Noise())
     schedule = schedule_of(speeds_of(args, SPEEDS), math.radians(args.hs_angle))
     firmware = _host if args.firmware == HOST else _controller
@@ -110,10 +111,9 @@ def _walk(args: argparse.Namespace, config: Any, lcm: Any) -> int:
             observers = [recorder, events_printer(wearer), display]
             exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers, key=key)
             exoskeleton.run(args.clock, args.duration)
-        checks = _checks(wearer, exoskeleton, recorder)
-        if schedule(args.duration).speed_m_s == 0:
-            checks.insert(1, _standing(exoskeleton))
-        checks += _log_checks(args, recorder, config)
+        stops = schedule(args.duration).speed_m_s == 0
+        checks = walk_checks(wearer, exoskeleton, stops)
+        checks += [*transport_checks(exoskeleton, recorder), *log_checks(recorder, config, by_can)]
         picture = recorder.csv_path.with_name(PICTURE)
         draw_walk(recorder.csv_path, picture, wearer.pushes, config)
     return _finish(args.out, wearer, exoskeleton, recorder, checks)
@@ -236,6 +236,7 @@ def _display(args: argparse.Namespace, lcm: Any) -> Iterator[Any]:
         return
     listener = Listener()
     listener.subscribe(lcm)
+    listener.line()  # what it imports must not hold up the walk
     on_terminal = sys.stdout.isatty()
     live = Live(listener.panel(), auto_refresh=False) if on_terminal else None
 
@@ -260,11 +261,13 @@ def _finish(
     wearer: "Wearer",
     exoskeleton: "Exoskeleton",
     recorder: "Recorder",
-    checks: list[Check],
+    checks: "list[Check]",
 ) -> int:
     """Tell; 0 only if the walk was sound."""
     print(summary(wearer, exoskeleton))
     print(level_times(recorder))
+    if exoskeleton.punctuality:
+        print(f"timing: {exoskeleton.punctuality.words()}")
     for good, words in checks:
         print(f"  {'ok ' if good else 'BAD'}  {words}")
     for path in (folder / name for name in (PICTURE, TABLE, CAN_LOG, LCM_LOG)):
@@ -279,69 +282,3 @@ def level_times(recorder: "Recorder") -> str:
 
     told = ticks_in(recorder.levels).items()
     return "level: " + ", ".join(f"{name} {ticks * TICK_S:.1f} s" for name, ticks in told)
-
-
-def _standing(exoskeleton: "Exoskeleton") -> Check:
-    from saddlewalk.emulation.wearer import MODES, STANDING
-
-    if exoskeleton.mode == STANDING:
-        return True, "stands at the end"
-    last = "without a plan" if exoskeleton.mode is None else MODES[exoskeleton.mode]
-    return False, f"is {last} at the end, not standing"
-
-
-def _checks(wearer: "Wearer", exoskeleton: "Exoskeleton", recorder: "Recorder") -> list[Check]:
-    from saddlewalk.logs.recorder import read_can_log
-
-    health = exoskeleton.health
-    late, refused = int(health["LATE_TICKS"]), int(health["REJECTED_FRAMES"])
-    rejected = exoskeleton.reader.receiver.rejected
-    ticks = exoskeleton.ticks
-    frames = read_can_log(recorder.can_path)
-    return [
-        (not wearer.fallen, "the wearer stayed up" if not wearer.fallen else "the wearer fell"),
-        (
-            rejected == refused == 0,
-            f"{rejected} frames refused by the wearer, {refused} by firmware",
-        ),
-        (late <= LATE_SHARE_MAX * ticks, f"{late} of {ticks} ticks late"),
-        (recorder.rows == ticks > 0, f"{recorder.rows} rows of CSV"),
-        (frames == recorder.frames > 0, f"{frames} CAN frames read again"),
-    ]
-
-
-def _log_checks(args: argparse.Namespace, recorder: "Recorder", config: Any) -> list[Check]:
-    """What LCM brought, and the firmware's walk computed again from the log that has its inputs."""
-    from saddlewalk.logs.recorder import CHANNELS, read_lcm_log
-
-    emulated = args.firmware == EMULATED
-    channels = read_lcm_log(recorder.lcm_path)
-    expected = ["SADDLEWALK_TRUTH"] if emulated else CHANNELS
-    missing = [name for name in expected if not channels[name]]
-    return [
-        (
-            sum(channels.values()) == recorder.lcm_messages and not missing,
-            f"{sum(channels.values())} LCM messages read again"
-            + (f", none on {', '.join(missing)}" if missing else ""),
-        ),
-        _rerun(recorder.can_path if emulated else recorder.lcm_path, config),
-    ]
-
-
-def _rerun(log: Path, config: Any) -> Check:
-    """Whether the logged inputs give the logged outputs again; what a log lost is only told."""
-    from saddlewalk.logs.messages import is_lcm_log, load_can_log, load_lcm_log
-    from saddlewalk.logs.rerun import rerun_lcm
-    from saddlewalk.logs.rerun_can import rerun_can
-
-    try:
-        if is_lcm_log(log):
-            report = rerun_lcm(load_lcm_log(log).records)
-        else:
-            report = rerun_can(load_can_log(log).records, config)
-    except UserError as error:
-        return False, f"{log.name} cannot be rerun: {error}"
-    if report.first:
-        return False, f"rerun of the log: {report.first}"
-    words = f"{report.ticks} ticks computed again from the log: the same bits"
-    return True, "; not compared: ".join([words, *report.not_compared])

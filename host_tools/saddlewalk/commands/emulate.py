@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 SPEED_M_S = 1.2
 IMPULSE_MAX_N_S = 1000.0
 DURATION_MAX_S = 86400.0
+RIGHT_AHEAD_M = 0.02  # far more than the sensors' noise, which else decides which foot steps first
 
 
 def add_parser(subparsers: Any) -> None:
@@ -164,7 +165,8 @@ def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer"
                 f"--push at {push.time_s:g} s: give a time before the end, --duration "
                 f"{args.duration:g} s"
             )
-    return Wearer(Body.of(config), noise, pushes=pushes, seed=args.seed)
+    body = Body.of(config)
+    return Wearer(body, noise, pushes, args.seed, right_ahead_m=RIGHT_AHEAD_M)
 
 
 def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":

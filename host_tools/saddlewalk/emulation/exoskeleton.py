@@ -1,5 +1,7 @@
 """The live node: an emulated wearer on the firmware's CAN bus and on LCM."""
 
+import importlib
+import itertools
 import math
 import time
 from collections.abc import Iterable
@@ -8,6 +10,8 @@ from typing import Any
 
 import can
 
+from saddlewalk.emulation.paced_ticks import WAKE_UP_S, PacedTicks
+from saddlewalk.emulation.punctuality import Punctuality
 from saddlewalk.emulation.wearer import (
     LEFT,
     RIGHT,
@@ -25,10 +29,10 @@ from saddlewalk.transport.authentication import Authenticator
 from saddlewalk.transport.wire import Sender, identifier
 from saddlewalk.verdict import level_name
 
-WAKE_UP_S = 0.01  # realtime: measurements at 100 Hz
 SILENCE_S = 3.0
 START_TICKS = 125  # that do not do as commanded, before a walk is given up: 10 s
 RESEND_S = 0.25
+COMMAND_S = 1.5 * TICK_S  # after the last command, when no tick comes that it would answer
 
 MODE_STAND, MODE_WALK = 0, 1
 
@@ -115,6 +119,7 @@ class Exoskeleton:
         self.ticks = 0
         self.health: dict[str, float] = {}  # the newest
         self.mode: int | None = None  # of the newest plan; None without one
+        self.punctuality: Punctuality | None = None  # in real time
         self._bus, self._lcm, self._wearer, self._schedule = bus, lcm, wearer, schedule
         self._observers = tuple(observers)
         self._fresh, self._if_silent = fresh, if_silent
@@ -140,25 +145,38 @@ class Exoskeleton:
             self._publish_truth()
             self._poll()
         self._begun = False
-        self._send_command_frame()
+        self._send_command_frame(self._wearer.time_s)
 
     def _run_realtime(self, duration_s: float) -> None:
-        """By the wall clock, on absolute deadlines."""
-        deadline_s = heard_s = time.monotonic()
-        wake_up = 0
-        while self._wearer.time_s < duration_s - STEP_S / 2:
-            if wake_up % round(TICK_S / WAKE_UP_S) == 0:
-                self._command_in_real_time()
+        """By the wall clock, on absolute deadlines; each command answers a tick, as in lockstep."""
+        importlib.import_module("saddlewalk.transport.lcm_types")  # which takes longer than a tick
+        try:
+            ticks = PacedTicks(self._bus, self._hear, SILENCE_S)
+        except UserError as error:
+            raise self._silent() from error
+        punctuality = self.punctuality = Punctuality()
+        heard_s, commanded_s = time.monotonic(), -math.inf
+        for wake_up in itertools.count():
+            if self._wearer.time_s >= duration_s - STEP_S / 2:
+                break
+            deadline_s = ticks.begin_s + wake_up * WAKE_UP_S
+            taken = ticks.at(wake_up, deadline_s)
+            now_s = time.monotonic()
+            for messages in taken:
+                punctuality.ticked(now_s)
+                self._take(messages)
+            punctuality.measured(self._wearer.time_s, now_s - deadline_s)
             self._advance(round(WAKE_UP_S / STEP_S))
             self._send_measurement()
             self._publish_truth()
-            self._poll()
-            wake_up += 1
-            deadline_s += WAKE_UP_S
-            if self._receive_until(deadline_s):
-                heard_s = time.monotonic()
-            elif time.monotonic() - heard_s > SILENCE_S:
+            if taken:
+                heard_s = now_s
+            elif now_s - heard_s > SILENCE_S:
                 raise self._silent()
+            if taken or now_s - commanded_s > COMMAND_S:
+                commanded_s = now_s
+                self._command_in_real_time()
+                self._poll()
         self._begun = False
         self._command_in_real_time()
 
@@ -175,20 +193,12 @@ class Exoskeleton:
         deadline_s = time.monotonic() + SILENCE_S
         patience_s = SILENCE_S if self.ticks or self._fresh else RESEND_S
         while time.monotonic() < deadline_s:
-            self._send_command_frame()
+            self._send_command_frame(self._wearer.time_s)
             self._send_measurement()
             messages = next_tick(self._bus, self._hear, patience_s)
             if messages:
                 return messages
         raise self._silent()
-
-    def _receive_until(self, deadline_s: float) -> bool:
-        """Take the ticks that come by then; True if one did."""
-        ticked = False
-        while messages := next_tick(self._bus, self._hear, deadline_s - time.monotonic()):
-            self._take(messages)
-            ticked = True
-        return ticked
 
     def _hear(self, frame: can.Message) -> Messages | None:
         for observer in self._observers:
@@ -222,7 +232,7 @@ class Exoskeleton:
 
     def _is_unheeded(self, plan: Plan | None) -> bool:
         """The firmware does not stand before the walk, or stands though it is to walk."""
-        to_walk = self._command()[0] == MODE_WALK
+        to_walk = self._command(self._wearer.time_s)[0] == MODE_WALK
         return not self._begun or (to_walk and plan is not None and plan.mode == STANDING)
 
     def _advance(self, steps: int) -> None:
@@ -243,16 +253,16 @@ class Exoskeleton:
         for observer in self._observers:
             observer.frame(frame)
 
-    def _command(self) -> tuple[int, float, float]:
-        """Mode, speed and heel-strike angle asked for now."""
-        asked = self._schedule(self._wearer.time_s)
+    def _command(self, time_s: float) -> tuple[int, float, float]:
+        """Mode, speed and heel-strike angle asked for at that time of the walk."""
+        asked = self._schedule(time_s)
         walk = self._begun and asked.speed_m_s > 0
         return MODE_WALK if walk else MODE_STAND, asked.speed_m_s, asked.heel_strike_rad
 
-    def _send_command_frame(self) -> None:
+    def _send_command_frame(self, time_s: float) -> None:
         """Authenticated, there is none until the firmware has opened a session."""
         names = ("MODE", "SPEED", "HEEL_STRIKE")
-        command = dict(zip(names, self._command(), strict=True))
+        command = dict(zip(names, self._command(time_s), strict=True))
         if self._authenticator:
             frames = self._authenticator.frames(self._sender, **command)
         else:
@@ -270,14 +280,16 @@ class Exoskeleton:
             self._send(self._sender.frame(name, CONTACT=contact, X=foot.real, Y=foot.imag))
 
     def _command_in_real_time(self) -> None:
-        (self._send_command_frame if self._authenticator else self._publish_command)()
+        """What is asked for at the next tick."""
+        tick_s = (round(self._wearer.time_s / TICK_S) + 1) * TICK_S
+        (self._send_command_frame if self._authenticator else self._publish_command)(tick_s)
 
-    def _publish_command(self) -> None:
+    def _publish_command(self, time_s: float) -> None:
         from saddlewalk.transport.lcm_types import command_t
 
         message = command_t()
         message.utime_us = time.time_ns() // 1000
-        message.mode, message.speed_m_s, message.heel_strike_rad = self._command()
+        message.mode, message.speed_m_s, message.heel_strike_rad = self._command(time_s)
         self._lcm.publish("SADDLEWALK_COMMAND", message.encode())
 
     def _publish_truth(self) -> None:

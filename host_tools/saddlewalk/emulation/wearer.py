@@ -245,7 +245,9 @@ class Wearer:
         pushes: tuple[Push, ...] = (),
         seed: int = 0,
         takes_recovery_step: bool = True,
+        right_ahead_m: float = 0.0,
     ) -> None:
+        """right_ahead_m: by which the right foot stands ahead of the left one at first."""
         self.body = body or Body()
         self.noise = noise or Noise()
         self.pushes = pushes
@@ -255,7 +257,8 @@ class Wearer:
         self.velocity_m_s = 0j
         self.rise_m_s = 0.0
         pendulum_m = self.body.pendulum_m
-        self.feet = [Foot(side * STANCE_M, leg_m=pendulum_m) for side in (1j, -1j)]
+        left = 1j * STANCE_M - right_ahead_m / 2
+        self.feet = [Foot(place, leg_m=pendulum_m) for place in (left, -left)]
         self.height_m = self._height_over(self.feet[LEFT])
         self.fallen = False
         self.fell_at_s = math.nan

@@ -1,0 +1,54 @@
+"""Whether the computer let a walk in real time keep its time."""
+
+import math
+from dataclasses import dataclass, field
+
+from saddlewalk.ticks import TICK_S
+
+STALL_S = TICK_S  # later than that, the wearer and the firmware have missed each other
+BEFORE_S = 3.0  # a fall takes up to two steps
+
+
+@dataclass
+class Stall:
+    """The wearer's own process did not run: at time_s of the walk, for so long."""
+
+    time_s: float
+    late_s: float
+
+
+@dataclass
+class Punctuality:
+    """How late the wearer's process was for its measurements, and when ticks failed to come."""
+
+    worst_s: float = 0.0
+    gap_s: float = 0.0  # the longest between two ticks, as they came
+    stalls: list[Stall] = field(default_factory=list)
+    _late_s: float = 0.0
+    _tick_s: float = math.nan
+
+    def measured(self, time_s: float, late_s: float) -> None:
+        """A measurement was sent at time_s of the walk, so late."""
+        self.worst_s = max(self.worst_s, late_s)
+        if late_s > STALL_S and self._late_s <= STALL_S:
+            self.stalls.append(Stall(time_s, late_s))
+        elif late_s > STALL_S:  # it catches up, or is stalled again before it has
+            self.stalls[-1].late_s = max(self.stalls[-1].late_s, late_s)
+        self._late_s = late_s
+
+    def ticked(self, now_s: float) -> None:
+        """A tick came, by a clock that no one sets."""
+        self.gap_s = max(self.gap_s, now_s - self._tick_s)  # the first is no gap: not a number
+        self._tick_s = now_s
+
+    def stall_before(self, time_s: float) -> Stall | None:
+        """The longest in the last seconds before a fall."""
+        near = [stall for stall in self.stalls if 0 <= time_s - stall.time_s <= BEFORE_S]
+        return max(near, key=lambda stall: stall.late_s, default=None)
+
+    def words(self) -> str:
+        stalled = f", {len(self.stalls)} stalls" if self.stalls else ""
+        return (
+            f"measurements at most {self.worst_s * 1e3:.0f} ms late{stalled}, ticks at most "
+            f"{self.gap_s * 1e3:.0f} ms apart"
+        )

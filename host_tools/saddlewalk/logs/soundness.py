@@ -1,0 +1,89 @@
+"""Whether a walk was sound, and if not why: what the demo says at its end."""
+
+from pathlib import Path
+from typing import Any
+
+from saddlewalk.emulation.exoskeleton import Exoskeleton
+from saddlewalk.emulation.wearer import MODES, STANDING, Wearer
+from saddlewalk.errors import UserError
+from saddlewalk.logs.messages import is_lcm_log, load_can_log, load_lcm_log
+from saddlewalk.logs.recorder import CHANNELS, Recorder, read_can_log, read_lcm_log
+from saddlewalk.logs.rerun import rerun_lcm
+from saddlewalk.logs.rerun_can import rerun_can
+
+LATE_SHARE_MAX = 0.05
+Check = tuple[bool, str]  # good, and in words
+
+
+def walk_checks(wearer: Wearer, exoskeleton: Exoskeleton, stops: bool) -> list[Check]:
+    """Of the walk itself. stops: it was to end standing."""
+    if wearer.fallen:
+        return [(False, _fall(wearer.fell_at_s, exoskeleton))]
+    return [(True, "the wearer stayed up"), *([_standing(exoskeleton)] if stops else [])]
+
+
+def _fall(time_s: float, exoskeleton: Exoskeleton) -> str:
+    """With the computer's part in it: a wearer whose process stands still cannot step."""
+    punctuality = exoskeleton.punctuality
+    stall = punctuality.stall_before(time_s) if punctuality else None
+    if stall is None:
+        return f"the wearer fell at {time_s:.2f} s"
+    return (
+        f"the wearer fell at {time_s:.2f} s, {time_s - stall.time_s:.2f} s after this computer had "
+        f"stalled the wearer's process for {stall.late_s:.2f} s: try again when it is less busy"
+    )
+
+
+def _standing(exoskeleton: Exoskeleton) -> Check:
+    if exoskeleton.mode == STANDING:
+        return True, "stands at the end"
+    last = "without a plan" if exoskeleton.mode is None else MODES[exoskeleton.mode]
+    return False, f"is {last} at the end, not standing"
+
+
+def transport_checks(exoskeleton: Exoskeleton, recorder: Recorder) -> list[Check]:
+    """Of frames, ticks and what was recorded of them."""
+    health = exoskeleton.health
+    late, refused = int(health["LATE_TICKS"]), int(health["REJECTED_FRAMES"])
+    rejected = exoskeleton.reader.receiver.rejected
+    ticks = exoskeleton.ticks
+    frames = read_can_log(recorder.can_path)
+    return [
+        (
+            rejected == refused == 0,
+            f"{rejected} frames refused by the wearer, {refused} by firmware",
+        ),
+        (late <= LATE_SHARE_MAX * ticks, f"{late} of {ticks} ticks late"),
+        (recorder.rows == ticks > 0, f"{recorder.rows} rows of CSV"),
+        (frames == recorder.frames > 0, f"{frames} CAN frames read again"),
+    ]
+
+
+def log_checks(recorder: Recorder, config: Any, by_can: bool) -> list[Check]:
+    """What LCM brought, and the firmware's walk computed again from the log that has its inputs."""
+    channels = read_lcm_log(recorder.lcm_path)
+    expected = ["SADDLEWALK_TRUTH"] if by_can else CHANNELS
+    missing = [name for name in expected if not channels[name]]
+    return [
+        (
+            sum(channels.values()) == recorder.lcm_messages and not missing,
+            f"{sum(channels.values())} LCM messages read again"
+            + (f", none on {', '.join(missing)}" if missing else ""),
+        ),
+        _rerun(recorder.can_path if by_can else recorder.lcm_path, config),
+    ]
+
+
+def _rerun(log: Path, config: Any) -> Check:
+    """Whether the logged inputs give the logged outputs again; what a log lost is only told."""
+    try:
+        if is_lcm_log(log):
+            report = rerun_lcm(load_lcm_log(log).records)
+        else:
+            report = rerun_can(load_can_log(log).records, config)
+    except UserError as error:
+        return False, f"{log.name} cannot be rerun: {error}"
+    if report.first:
+        return False, f"rerun of the log: {report.first}"
+    words = f"{report.ticks} ticks computed again from the log: the same bits"
+    return True, "; not compared: ".join([words, *report.not_compared])
