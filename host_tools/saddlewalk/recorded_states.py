@@ -15,7 +15,7 @@ STATE_COLUMNS = (
 ).split()
 SCORE_COLUMNS = (
     "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m ebos_com_m ebos_xcom_m "
-    "excess_stop_j excess_track_j can_stop on_track level flags"
+    "excess_stop_j excess_track_j can_stop on_track level flags recovery_margin_m margin"
 ).split()
 
 
@@ -98,6 +98,8 @@ def score_row(t_s: float, output: Any) -> list[Cell]:
         compared(int(verdict.on_track), core.SADDLE_VALID_STOP),
         level_name(verdict.level),
         _flags(output),
+        compared(verdict.recovery.margin_m),
+        verdict.margin if verdict.margin_known else None,
     ]
 
 

@@ -12,7 +12,7 @@ REASONS = {
     "none": "",
     "input": "a measurement is missing or cannot be believed",
     "no_walk": "nothing is planned, and nobody was seen to stand or to complete a step",
-    "no_step": "no place within reach to step to",
+    "no_step": "the step to come does not catch the body",
     "speed": "this body cannot walk at this speed",
     "s_pend": "the steps are almost too short for this speed",
     "s_jump": "the steps are almost too long for this speed",
@@ -21,6 +21,11 @@ REASONS = {
     "xcom_ml": "sideways motion departs from the expected",
     "off_track": "more energy than the ankles can bring back to the plan's",
     "settling": "no level has held for long enough yet",
+    "forward": "the body departs forward of the feet",
+    "backward": "the body departs backward of the feet",
+    "left": "the body departs to the left of the feet",
+    "right": "the body departs to the right of the feet",
+    "sinking": "the body sinks",
 }
 
 COLUMNS = (

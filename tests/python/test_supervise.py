@@ -15,7 +15,7 @@ from twin import GRAVITY, Twin, bos_margin
 
 TOLERANCE = 2e-5
 FAULTS_AND_LIMITS = 0xFFFFFF  # of the flags; above is the reason
-INPUT, NO_WALK, NO_STEP = 1, 2, 3
+INPUT, NO_STEP = 1, 3
 DT_S = 0.08
 
 
@@ -151,8 +151,8 @@ def test_speed_stands_in_until_a_step_is_complete(capsys, tmp_path):
     path = write(tmp_path / "states.csv", steady_walk(Twin(1.2, 0.0), 4))
     without = supervise(capsys, "--in", path)
     assert without[0]["v_comp_m_s"] == "" and without[0]["s_sw"] == ""
-    assert without[0]["level"] == "unknown" and int(without[0]["flags"], 16) >> 24 == NO_WALK
     assert without[0]["ebos_com_m"] == without[0]["on_track"] == ""
+    assert without[0]["recovery_margin_m"] == "" and without[0]["level"] == "stable"
     assert without[0]["excess_stop_j"] != "" and without[0]["can_stop"] == "0"
     assert float(supervise(capsys, "--in", path, "--speed", "1.1")[0]["v_comp_m_s"]) == (
         pytest.approx(1.1)
@@ -276,3 +276,28 @@ def test_speed_beyond_the_ceiling_is_told(capsys, tmp_path):
     assert told.count("\n") == 1 and "--speed 9" in told and "1.935 m/s" in told
     assert main(["supervise", "--in", str(source), "--speed", "1.2"]) == 0
     assert capsys.readouterr().err == ""
+
+
+def test_level_is_decided_by_the_margin(capsys, tmp_path):
+    """A push of a walk of one's own that ends in a fall: each level is met on the way."""
+    states = steady_walk(Twin(1.2, 0.0), 10)
+    for k, state in enumerate(states[60:]):
+        state["com_vx_m_s"] += 0.05 * k
+        state["com_x_m"] += 0.002 * k * k
+        state["com_z_m"] -= 0.0005 * k * k
+    rows = supervise(capsys, "--in", write(tmp_path / "states.csv", states))
+    levels = {row["level"] for row in rows}
+    assert levels == {"stable", "caution", "unstable"}
+    for row in rows:
+        margin = float(row["margin"])
+        assert (margin <= 0) == (row["level"] == "unstable")
+        assert margin <= 0.1 or row["level"] == "stable"
+    assert float(rows[50]["margin"]) > 0.2 and rows[50]["recovery_margin_m"] != ""
+
+
+def test_margin_of_a_missing_measurement_is_empty(capsys, tmp_path):
+    states = steady_walk(Twin(1.2, 0.0), 4)
+    states[10]["com_z_m"] = math.nan
+    rows = supervise(capsys, "--in", write(tmp_path / "states.csv", states))
+    assert rows[10]["margin"] == "" and rows[10]["level"] == "unknown"
+    assert all(row["margin"] for k, row in enumerate(rows) if k != 10)

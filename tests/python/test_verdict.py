@@ -21,6 +21,7 @@ ENERGY_TOLERANCE_J = 5e-3  # the states' rounding: 500 N over 10 um
 
 # What the tests below count on, whatever the defaults are.
 CONFIG = f"""
+previous_level = 1
 level_hold_ticks = 1
 foresight_s = {FORESIGHT_S}
 caution_xcom_ap_m = 0.13

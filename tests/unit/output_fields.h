@@ -53,6 +53,10 @@ static const struct {
     SCORES(scores),
     FIELD(verdict.level, OTHER),
     FIELD(verdict.reason, OTHER),
+    FIELD(verdict.driver, OTHER),
+    FIELD(verdict.margin_known, OTHER),
+    FIELD(verdict.margin, FLOATS),
+    FIELD(verdict.caution_below, FLOATS),
     FIELD(verdict.compared, OTHER),
     FIELD(verdict.on_track, OTHER),
     FIELD(verdict.excess_track_j, FLOATS),
@@ -64,6 +68,13 @@ static const struct {
     FIELD(verdict.recovery.foot, OTHER),
     FIELD(verdict.recovery.landing_m, FLOATS),
     FIELD(verdict.recovery.margin_m, FLOATS),
+    FIELD(walk.velocity_m_s, FLOATS),
+    FIELD(walk.height_m, FLOATS),
+    FIELD(walk.ripple, FLOATS),
+    FIELD(walk.step_time_s, FLOATS),
+    FIELD(walk.step_length_m, FLOATS),
+    FIELD(walk.step_width_m, FLOATS),
+    FIELD(walk.step_margin, FLOATS),
 };
 
 #endif

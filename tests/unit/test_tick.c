@@ -494,8 +494,7 @@ static void assert_sound_scores(const saddle_scores_t *scores)
     TEST_ASSERT_TRUE(scores->bos.defined || scores->bos.radius_m == 0.0f);
 }
 
-static const uint32_t UNUSABLE =
-    SADDLE_FAULTS_COM | SADDLE_FAULTS_FEET | (uint32_t)SADDLE_FAULT_FEET_TOGETHER;
+static const uint32_t MISSING = SADDLE_FAULTS_COM | SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT;
 
 static void assert_unusable_input_is_not_scored(const saddle_output_t *o)
 {
@@ -506,26 +505,43 @@ static void assert_unusable_input_is_not_scored(const saddle_output_t *o)
         TEST_ASSERT_EQUAL_HEX32(0, o->scores.valid & of_com);
         TEST_ASSERT_TRUE(o->scores.xcom_m.x == 0.0f && o->scores.xcom_m.y == 0.0f);
     }
-    if ((o->faults & SADDLE_FAULTS_FEET) != 0u) {
+    if ((o->faults & (SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT)) != 0u) {
         TEST_ASSERT_EQUAL_HEX32(0, o->scores.valid & of_feet);
         TEST_ASSERT_FALSE(o->scores.bos.defined);
     }
-    if ((o->faults & UNUSABLE) != 0u) {
+    if ((o->faults & MISSING) != 0u) {
         TEST_ASSERT_EQUAL_UINT8(SADDLE_LEVEL_UNKNOWN, o->verdict.level);
         TEST_ASSERT_EQUAL_UINT8(SADDLE_REASON_INPUT, o->verdict.reason);
         TEST_ASSERT_FALSE(o->verdict.compared);
     }
 }
 
-static saddle_level_t level_of(uint8_t reason)
+/* Each reason belongs to its levels: 1 << saddle_level_t. */
+static unsigned levels_of(uint8_t reason)
 {
     switch (reason) {
-    case SADDLE_REASON_NONE: return SADDLE_LEVEL_STABLE;
-    case SADDLE_REASON_NO_STEP: return SADDLE_LEVEL_UNSTABLE;
+    case SADDLE_REASON_NONE: return 1u << SADDLE_LEVEL_STABLE;
     case SADDLE_REASON_INPUT:
     case SADDLE_REASON_NO_WALK:
-    case SADDLE_REASON_SETTLING: return SADDLE_LEVEL_UNKNOWN;
-    default: return SADDLE_LEVEL_CAUTION;
+    case SADDLE_REASON_SETTLING: return 1u << SADDLE_LEVEL_UNKNOWN;
+    case SADDLE_REASON_NO_STEP:
+    case SADDLE_REASON_FORWARD:
+    case SADDLE_REASON_BACKWARD:
+    case SADDLE_REASON_LEFT:
+    case SADDLE_REASON_RIGHT:
+    case SADDLE_REASON_SINKING: return 1u << SADDLE_LEVEL_CAUTION | 1u << SADDLE_LEVEL_UNSTABLE;
+    default: return 1u << SADDLE_LEVEL_CAUTION;
+    }
+}
+
+static void assert_sound_margin(const saddle_output_t *o)
+{
+    const saddle_verdict_t *verdict = &o->verdict;
+    TEST_ASSERT_TRUE(verdict->driver <= (uint8_t)SADDLE_REASON_SINKING);
+    TEST_ASSERT_TRUE(verdict->caution_below >= 0.0f);
+    TEST_ASSERT_EQUAL(verdict->margin_known, verdict->driver != (uint8_t)SADDLE_REASON_NONE);
+    if (!verdict->margin_known) {
+        TEST_ASSERT_TRUE(verdict->margin == 0.0f && verdict->caution_below == 0.0f);
     }
 }
 
@@ -533,12 +549,17 @@ static void assert_sound_verdict(const saddle_output_t *o)
 {
     const saddle_verdict_t *verdict = &o->verdict;
     const saddle_recovery_t *recovery = &verdict->recovery;
-    TEST_ASSERT_TRUE(verdict->reason <= (uint8_t)SADDLE_REASON_SETTLING);
-    TEST_ASSERT_EQUAL_UINT8(level_of(verdict->reason), verdict->level);
+    TEST_ASSERT_TRUE((levels_of(verdict->reason) >> verdict->level & 1u) != 0u);
+    assert_sound_margin(o);
     if (!verdict->compared) {
         const saddle_output_t whole = {.verdict = *verdict};
-        const saddle_output_t nothing = {.verdict = {.reason = verdict->reason}};
-        TEST_ASSERT_TRUE(same_output(&nothing, &whole)); /* level unknown, and every number 0 */
+        const saddle_output_t nothing = {.verdict = {.level = verdict->level,
+                                                     .reason = verdict->reason,
+                                                     .driver = verdict->driver,
+                                                     .margin_known = verdict->margin_known,
+                                                     .margin = verdict->margin,
+                                                     .caution_below = verdict->caution_below}};
+        TEST_ASSERT_TRUE(same_output(&nothing, &whole)); /* every other number 0 */
         return;
     }
     TEST_ASSERT_TRUE(recovery->foot <= 1u);
@@ -578,7 +599,7 @@ static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
     uint32_t faults = 0;
     uint32_t limits = 0;
     int levels[SADDLE_LEVEL_UNSTABLE + 1] = {0};
-    int reasons[SADDLE_REASON_SETTLING + 1] = {0};
+    int reasons[SADDLE_REASON_SINKING + 1] = {0};
     for (int k = 0; k < MANY(300000); k++) {
         if (k % 200 == 0) {
             config = random_config(&state);
@@ -616,7 +637,7 @@ static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
         TEST_ASSERT_GREATER_THAN_INT(5000, levels[i]);
     }
     for (size_t i = 0; i < COUNT_OF(reasons); i++) {
-        TEST_ASSERT_GREATER_THAN_INT(100, reasons[i]);
+        TEST_ASSERT_GREATER_THAN_INT(50, reasons[i]); /* half of the configurations know it */
     }
 }
 
@@ -798,9 +819,11 @@ static void test_gap_between_the_ticks_ends_the_level_and_the_walk(void)
 {
     uint64_t t = walk_for_a_while();
     TEST_ASSERT_EQUAL_UINT8(SADDLE_LEVEL_STABLE, output.verdict.level);
+    context.model.config.level_hold_ticks = 2.0f;
     t += 10000000u;
     tick_at(t);
     TEST_ASSERT_EQUAL_UINT8(SADDLE_LEVEL_UNKNOWN, output.verdict.level);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_REASON_SETTLING, output.verdict.reason);
     TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_TICK_GAP | SADDLE_LIMIT_SAFE_STOP, output.limits);
     TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STOPPING, output.plan.mode);
 }
@@ -862,6 +885,8 @@ static void test_wearer_who_follows_the_plan_never_departs_from_it(void)
 /* Nothing was commanded and nobody stands: whoever walks there is no follower of the plan. */
 static void test_plan_that_only_stands_leads_nobody(void)
 {
+    config.previous_level = 1.0f;
+    saddle_init(&context, &config);
     input.command.mode = SADDLE_COMMAND_STAND;
     for (uint64_t t = 0; t < 800000u; t += 80000u) {
         input.measurement.com.velocity_m_s.x += 0.001f;

@@ -37,8 +37,10 @@ void setUp(void)
     config.caution_xcom_ap_m = 0.13f;
     config.caution_xcom_ml_m = 0.07f;
     config.level_hold_ticks = 1.0f;
+    config.previous_level = 1.0f; /* the margin has tests of its own */
     body = model_of(&config)->body;
     memset(&supervisor, 0, sizeof supervisor);
+    saddle_supervisor_init(&supervisor, model_of(&config));
 }
 
 void tearDown(void) {}

@@ -34,6 +34,7 @@ saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *co
     }
     saddle_model_init(&context->model, config);
     saddle_planner_reset(&context->planner, &context->model);
+    saddle_supervisor_init(&context->supervisor, &context->model);
     context->initialised = INITIALISED;
     return SADDLE_OK;
 }
@@ -149,6 +150,7 @@ static void supervise(saddle_context_t *context, const saddle_input_t *input, ui
     output->faults |=
         saddle_supervisor_update(&context->supervisor, &context->model, &input->measurement, faults,
                                  dt_s, &intent, &output->scores, &output->verdict);
+    output->walk = context->supervisor.learning.walk;
 }
 
 saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,

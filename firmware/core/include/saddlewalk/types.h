@@ -74,7 +74,7 @@ typedef struct {
     float bos_factor;                 /**< share of the geometric BoS that is used; 1: the paper's */
     float ankle_work_factor;          /**< W_max of m g d_h^2 / l_p, [E27] */
     float stop_margin_m;              /**< of the XCoM, to stop in the present posture; -10: any, as
-                                           printed, [E31] */
+                                           printed, [E36] */
     float foresight_s;                /**< a wearer in need can put the foot down within this, [E28] */
     float cop_shift_ap_m;             /**< how far the wearer can move the CoP, [E30]; 0: as printed */
     float cop_shift_ml_m;
@@ -83,8 +83,22 @@ typedef struct {
     float recovery_margin_m;          /**< XCoM inside the landing CoP by this, [E30] */
     float recovery_follow;            /**< share of the XCoM's departure that the landing follows; 0:
                                            the nearest place to the planned one, [E30] */
-    float caution_score;              /**< a score below it is a caution, [E31] */
-    float caution_xcom_ap_m;          /**< XCoM off the planned one by more is a caution, [E31] */
+    float departure_foresight;        /**< how far ahead, of 1 / natural frequency, [E33] */
+    float departure_lateral_weight;   /**< of a departure across, [E33] */
+    float departure_step_share;       /**< of half the distance of the feet: no departure, [E33] */
+    float departure_sink_share;       /**< of a sinking CoM's velocity that is, [E33] */
+    float tolerance_max;              /**< departure that a walker of even speed bears, [E34] */
+    float tolerance_ripple_slope;     /**< less tolerance per ripple of the speed, [E34] */
+    float tolerance_min;              /**< and no less than this, [E34] */
+    float plan_reserve;               /**< added for a wearer on a plan, [E35] */
+    float caution_margin;             /**< a margin below it is a caution, [E31] */
+    float learn_time_s;               /**< forgetting time of mean velocity and height, [E32] */
+    float learn_ripple_time_s;        /**< and of the ripple, [E32] */
+    float learn_ripple_start;         /**< ripple before a walk was seen; of a calibrated person */
+    float learn_margin;               /**< ripple and steps are learned above this margin, [E32] */
+    float previous_level;             /**< 1: the level as 0.1.0 decided it, for comparison, [E36] */
+    float caution_score;              /**< a score below it is a caution, [E36] */
+    float caution_xcom_ap_m;          /**< XCoM off the planned one by more is a caution, [E36] */
     float caution_xcom_ml_m;
     float level_hold_ticks;           /**< a level holds this long before it is announced */
     saddle_ankle_t ankle;
@@ -264,8 +278,8 @@ typedef struct {
 typedef enum {
     SADDLE_LEVEL_UNKNOWN = 0,
     SADDLE_LEVEL_STABLE = 1,
-    SADDLE_LEVEL_CAUTION = 2, /**< departs from the walk, but can stop or step */
-    SADDLE_LEVEL_UNSTABLE = 3 /**< can neither stop nor reach a place to step to */
+    SADDLE_LEVEL_CAUTION = 2, /**< departs further from the usual walk than steady steps do */
+    SADDLE_LEVEL_UNSTABLE = 3 /**< no margin is left: a fall is likely */
 } saddle_level_t;
 
 /** What decided the level. */
@@ -273,8 +287,9 @@ typedef enum {
     SADDLE_REASON_NONE = 0,
     SADDLE_REASON_INPUT = 1,     /**< unknown: the faults say which input */
     SADDLE_REASON_NO_WALK = 2,   /**< unknown: nothing is planned, and nobody was seen to stand or to
-                                      complete a step */
-    SADDLE_REASON_NO_STEP = 3,   /**< unstable: no place within reach catches the XCoM */
+                                      complete a step; with previous_level, as all up to 10 but
+                                      NO_STEP */
+    SADDLE_REASON_NO_STEP = 3,   /**< the step to come does not catch the CoM */
     SADDLE_REASON_SPEED = 4,     /**< caution, here and below: v_CoMp cannot be walked */
     SADDLE_REASON_S_PEND = 5,
     SADDLE_REASON_S_JUMP = 6,
@@ -282,7 +297,12 @@ typedef enum {
     SADDLE_REASON_XCOM_AP = 8,   /**< the XCoM is off the planned one */
     SADDLE_REASON_XCOM_ML = 9,
     SADDLE_REASON_OFF_TRACK = 10, /**< more energy than the ankles can bring back to the plan's */
-    SADDLE_REASON_SETTLING = 11   /**< unknown: no level has held for level_hold_ticks yet */
+    SADDLE_REASON_SETTLING = 11,  /**< unknown: no level has held for level_hold_ticks yet */
+    SADDLE_REASON_FORWARD = 12,   /**< the CoM departs ahead of the feet, here and below */
+    SADDLE_REASON_BACKWARD = 13,
+    SADDLE_REASON_LEFT = 14,
+    SADDLE_REASON_RIGHT = 15,
+    SADDLE_REASON_SINKING = 16    /**< or sinks */
 } saddle_reason_t;
 
 /** Points are measured from the stance CoP, the foot that does not step. */
@@ -294,11 +314,17 @@ typedef struct {
     float margin_m; /**< reach that is left on the scarcer axis; negative: what is lacking */
 } saddle_recovery_t;
 
-/** The measured posture against the walk that is planned. Where compared is false all else but
- *  level and reason is 0. */
+/** The measured posture against the wearer's own walk and the one that is planned. Where
+ *  margin_known is false margin, caution_below and driver are 0; where compared is false all below
+ *  it is. */
 typedef struct {
     uint8_t level;  /**< saddle_level_t that is announced */
     uint8_t reason; /**< saddle_reason_t of it */
+    uint8_t driver; /**< saddle_reason_t of this tick's margin: the largest part of the departure */
+    bool margin_known;
+    float margin;        /**< by it the level is decided: larger is safer, unstable at and below 0;
+                              of the CoM's usual height, [E34] [E35] */
+    float caution_below; /**< and caution at and below this, [E31] */
     bool compared;
     bool on_track;          /**< [E27] the ankles can absorb excess_track_j */
     float excess_track_j;   /**< [E26]; it and on_track only with SADDLE_VALID_STOP */
@@ -307,6 +333,17 @@ typedef struct {
     saddle_vec2_t xcom_deviation_m; /**< from the planned XCoM at the same phase */
     saddle_recovery_t recovery;     /**< [E30] */
 } saddle_verdict_t;
+
+/** The wearer's own walk, learned while it is steady: what is usual, [E32]. All but the ripple is 0
+ *  before the first measurement; a step's numbers are 0 before the first steady step. */
+typedef struct {
+    saddle_vec2_t velocity_m_s; /**< mean over learn_time_s */
+    float height_m;             /**< of the CoM, likewise */
+    float ripple;               /**< RMS of the sagittal velocity about its mean while walking, of
+                                     sqrt(g height_m); starts at learn_ripple_start */
+    float step_time_s, step_length_m, step_width_m;
+    float step_margin;          /**< usual lowest margin of a step */
+} saddle_learned_walk_t;
 
 /* ---- a tick -------------------------------------------------------------------------------- */
 
@@ -337,7 +374,8 @@ typedef struct {
     uint32_t faults; /**< saddle_fault_t bits */
     saddle_plan_t plan;
     saddle_scores_t scores;   /**< of the measured posture, in the frame of the CoM */
-    saddle_verdict_t verdict; /**< the measured posture against the plan */
+    saddle_verdict_t verdict; /**< the measured posture against the wearer's walk and the plan */
+    saddle_learned_walk_t walk; /**< the wearer's own, as learned so far */
 } saddle_output_t;
 
 #endif

@@ -35,8 +35,10 @@ static saddle_reason_t departure(const saddle_model_t *model, const saddle_verdi
     return verdict->on_track ? SADDLE_REASON_NONE : SADDLE_REASON_OFF_TRACK;
 }
 
-static saddle_reason_t reason_of(const saddle_model_t *model, uint32_t faults,
-                                 const saddle_scores_t *scores, const saddle_verdict_t *verdict)
+/* [E36] What decided the level before there was a margin. */
+static saddle_reason_t previous_reason(const saddle_model_t *model, uint32_t faults,
+                                       const saddle_scores_t *scores,
+                                       const saddle_verdict_t *verdict)
 {
     const uint32_t unusable =
         SADDLE_FAULTS_COM | SADDLE_FAULTS_FEET | (uint32_t)SADDLE_FAULT_FEET_TOGETHER;
@@ -54,16 +56,35 @@ static saddle_reason_t reason_of(const saddle_model_t *model, uint32_t faults,
     return low != SADDLE_REASON_NONE ? low : departure(model, verdict);
 }
 
-static saddle_level_t level_of(saddle_reason_t reason)
+static saddle_level_t previous_level(saddle_reason_t reason)
 {
     switch (reason) {
     case SADDLE_REASON_NONE: return SADDLE_LEVEL_STABLE;
     case SADDLE_REASON_INPUT:
-    case SADDLE_REASON_NO_WALK:
-    case SADDLE_REASON_SETTLING: return SADDLE_LEVEL_UNKNOWN;
+    case SADDLE_REASON_NO_WALK: return SADDLE_LEVEL_UNKNOWN;
     case SADDLE_REASON_NO_STEP: return SADDLE_LEVEL_UNSTABLE;
     default: return SADDLE_LEVEL_CAUTION;
     }
+}
+
+/* A level of this tick, and what decided it. */
+typedef struct {
+    saddle_level_t level;
+    saddle_reason_t reason;
+} decision_t;
+
+/* [E31] */
+static decision_t decide(const saddle_verdict_t *verdict)
+{
+    decision_t decision = {SADDLE_LEVEL_STABLE, SADDLE_REASON_NONE};
+    if (!verdict->margin_known) {
+        decision.level = SADDLE_LEVEL_UNKNOWN;
+        decision.reason = SADDLE_REASON_INPUT;
+    } else if (verdict->margin <= verdict->caution_below) {
+        decision.level = verdict->margin <= 0.0f ? SADDLE_LEVEL_UNSTABLE : SADDLE_LEVEL_CAUTION;
+        decision.reason = (saddle_reason_t)verdict->driver;
+    }
+    return decision;
 }
 
 static void count(uint8_t *ticks, bool goes_on)
@@ -99,34 +120,44 @@ static uint8_t level_held(const saddle_level_state_t *state, const saddle_model_
 }
 
 /* Why the announced level is that, whatever this tick's own reason is. */
-static saddle_reason_t announced_reason(const saddle_level_state_t *state, saddle_reason_t reason)
+static saddle_reason_t announced_reason(const saddle_level_state_t *state, decision_t decision)
 {
     switch (state->level) {
     case SADDLE_LEVEL_STABLE: return SADDLE_REASON_NONE;
     case SADDLE_LEVEL_CAUTION: return (saddle_reason_t)state->caution_reason;
-    case SADDLE_LEVEL_UNSTABLE: return SADDLE_REASON_NO_STEP;
-    default: return level_of(reason) == SADDLE_LEVEL_UNKNOWN ? reason : SADDLE_REASON_SETTLING;
+    case SADDLE_LEVEL_UNSTABLE: return (saddle_reason_t)state->unstable_reason;
+    default:
+        return decision.level == SADDLE_LEVEL_UNKNOWN ? decision.reason : SADDLE_REASON_SETTLING;
     }
 }
 
 /* A level is announced once it, or a worse one, has held for long enough, a better one likewise;
  * unknown at once. */
 static void announce(saddle_level_state_t *state, const saddle_model_t *model,
-                     saddle_reason_t reason)
+                     decision_t decision)
 {
-    const saddle_level_t level = level_of(reason);
-    count_levels(state, (uint8_t)level);
-    if (level == SADDLE_LEVEL_CAUTION) {
-        state->caution_reason = (uint8_t)reason;
+    count_levels(state, (uint8_t)decision.level);
+    if (decision.level == SADDLE_LEVEL_CAUTION) {
+        state->caution_reason = (uint8_t)decision.reason;
     }
-    state->level = level == SADDLE_LEVEL_UNKNOWN ? (uint8_t)level : level_held(state, model);
-    state->reason = (uint8_t)announced_reason(state, reason);
+    if (decision.level == SADDLE_LEVEL_UNSTABLE) {
+        state->unstable_reason = (uint8_t)decision.reason;
+    }
+    state->level = decision.level == SADDLE_LEVEL_UNKNOWN ? (uint8_t)SADDLE_LEVEL_UNKNOWN
+                                                          : level_held(state, model);
+    state->reason = (uint8_t)announced_reason(state, decision);
 }
 
-void saddle_level_update(saddle_level_state_t *state, const saddle_model_t *model, uint32_t faults,
-                         const saddle_scores_t *scores, saddle_verdict_t *verdict)
+void saddle_level_update(saddle_level_state_t *state, const saddle_model_t *model,
+                         uint32_t faults, const saddle_scores_t *scores,
+                         saddle_verdict_t *verdict)
 {
-    announce(state, model, reason_of(model, faults, scores, verdict));
+    decision_t decision = decide(verdict);
+    if (model->config.previous_level > 0.5f) {
+        decision.reason = previous_reason(model, faults, scores, verdict);
+        decision.level = previous_level(decision.reason);
+    }
+    announce(state, model, decision);
     verdict->level = state->level;
     verdict->reason = state->reason;
 }

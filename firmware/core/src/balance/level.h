@@ -4,8 +4,8 @@
 
 #include <saddlewalk/private/context.h>
 
-/** Decide and announce. faults: of the inputs and of the scores. Reads what the comparison wrote to
- *  *verdict and writes its level and reason. */
+/** Decide and announce. faults: of the inputs and of the scores. Reads the margin and what the
+ *  comparison wrote to *verdict and writes its level and reason. */
 void saddle_level_update(saddle_level_state_t *state, const saddle_model_t *model,
                          uint32_t faults, const saddle_scores_t *scores,
                          saddle_verdict_t *verdict);

@@ -1,12 +1,53 @@
 #include "balance/supervisor.h"
 
+#include "balance/learned_walk.h"
 #include "balance/level.h"
+#include "balance/margin.h"
 #include "balance/scores.h"
 #include "sense/step_tracker.h"
+
+void saddle_supervisor_init(saddle_supervisor_t *supervisor, const saddle_model_t *model)
+{
+    saddle_learning_init(&supervisor->learning, model);
+}
+
+/* Crossed feet, or none on the ground, contradict the sensors of a wearer who was not seen before.
+ * From then on they are what somebody does who is about to fall. */
+static uint32_t missing(const saddle_supervisor_t *supervisor, uint32_t faults)
+{
+    const uint32_t evidence =
+        (uint32_t)SADDLE_FAULT_AIRBORNE | (uint32_t)SADDLE_FAULT_FEET_CROSSED;
+    const bool seen = supervisor->level.level != (uint8_t)SADDLE_LEVEL_UNKNOWN;
+    return seen ? faults & ~evidence : faults;
+}
+
+static void no_margin(saddle_verdict_t *verdict)
+{
+    verdict->margin_known = false;
+    verdict->margin = 0.0f;
+    verdict->caution_below = 0.0f;
+    verdict->driver = (uint8_t)SADDLE_REASON_NONE;
+}
+
+/* Returns the margin before the plan has a say. on_plan: *verdict compares with a plan that leads. */
+static float measure_margin(const saddle_model_t *model, const saddle_learning_t *learning,
+                            const saddle_measurement_t *measurement, bool on_plan,
+                            saddle_verdict_t *verdict)
+{
+    const saddle_departure_t departure = saddle_departure(model, learning, measurement);
+    const float own = saddle_own_margin(model, learning, &departure);
+    const float plan = on_plan ? saddle_plan_margin(model, learning, verdict) : 0.0f;
+    verdict->margin_known = true;
+    verdict->margin = own + plan;
+    verdict->caution_below = saddle_caution_below(model, learning);
+    verdict->driver = (uint8_t)saddle_driver(&departure, plan);
+    return own;
+}
 
 void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s)
 {
     saddle_track_gap(&supervisor->steps, gap_s);
+    saddle_learning_gap(&supervisor->learning);
     saddle_level_reset(&supervisor->level);
 }
 
@@ -17,8 +58,9 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
 {
     saddle_step_tracker_t *steps = &supervisor->steps;
     saddle_track_steps(steps, model, measurement, faults, dt_s);
-    const bool feet_known = (faults & SADDLE_FAULTS_FEET) == 0u;
-    const bool com_known = (faults & SADDLE_FAULTS_COM) == 0u;
+    const uint32_t missing_inputs = missing(supervisor, faults);
+    const bool feet_known = (missing_inputs & SADDLE_FAULTS_FEET) == 0u;
+    const bool com_known = (missing_inputs & SADDLE_FAULTS_COM) == 0u;
     const bool is_to_stand = intent->leads && !intent->walking;
     const bool speed_known = !is_to_stand && (steps->v_comp_known || intent->step.speed_m_s > 0.0f);
     const bool half_step_known = !is_to_stand && feet_known && com_known && steps->half_step_known;
@@ -40,6 +82,17 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     if (com_known && feet_known && scores->bos.defined) {
         const saddle_wearer_t wearer = {steps, measurement, &posture, scores};
         saddle_compare(model, &wearer, intent, verdict);
+    }
+    no_margin(verdict);
+    if (com_known && feet_known) {
+        saddle_learning_t *learning = &supervisor->learning;
+        saddle_learning_watch(learning, measurement, dt_s);
+        const bool on_plan = intent->leads && verdict->compared;
+        const float own = measure_margin(model, learning, measurement, on_plan, verdict);
+        saddle_learning_update(learning, model, steps, own, dt_s);
+        steps->disturbed = own <= model->config.learn_margin;
+    } else {
+        saddle_learning_gap(&supervisor->learning);
     }
     saddle_level_update(&supervisor->level, model, all_faults, scores, verdict);
     return all_faults;

@@ -7,6 +7,9 @@
 
 #include <saddlewalk/private/context.h>
 
+/** Nothing seen and nothing learned yet; the state is cleared. */
+void saddle_supervisor_init(saddle_supervisor_t *supervisor, const saddle_model_t *model);
+
 /** What happened in the last gap_s is not known: no level holds over it. */
 void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s);
 

@@ -34,9 +34,13 @@ static void follow_speed(saddle_step_tracker_t *tracker, bool velocity_known, fl
     if (!strike) {
         return;
     }
+    const bool holds = tracker->disturbed && tracker->v_comp_known;
     tracker->v_comp_known = false;
     if (tracker->step_open && tracker->step_duration_s > 0.0f) {
-        tracker->v_comp_m_s = tracker->step_distance_m / tracker->step_duration_s;
+        if (!holds) {
+            tracker->v_comp_m_s = tracker->step_distance_m / tracker->step_duration_s;
+        }
+        tracker->step_time_s = tracker->step_duration_s;
         tracker->v_comp_known = true;
         tracker->stands = false;
     }
@@ -94,6 +98,7 @@ void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_model_t *mo
     const bool left = left_known && heel_strike(tracker, measurement, SADDLE_LEFT, dt_s);
     const bool right = right_known && heel_strike(tracker, measurement, SADDLE_RIGHT, dt_s);
     const bool strike = left || right;
+    tracker->struck = strike;
     follow_speed(tracker, com_known, measurement->com.velocity_m_s.x, dt_s, strike);
     if (strike) {
         tracker->stance = (uint8_t)(left ? SADDLE_LEFT : SADDLE_RIGHT);

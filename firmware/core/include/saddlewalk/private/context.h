@@ -145,13 +145,17 @@ typedef struct {
 typedef struct {
     float step_distance_m, step_duration_s; /**< since the last heel strike */
     float last_velocity_m_s;
-    float v_comp_m_s;      /**< mean AP speed over the last completed step */
+    float v_comp_m_s;      /**< mean AP speed over the last completed step that was undisturbed */
+    float step_time_s;     /**< of the last completed step; known with v_comp_m_s */
     float half_step_m;     /**< half of what the landed foot was ahead at the last heel strike */
     float step_width_m;    /**< of the feet then, left minus right */
     float since_strike_s;
     float airborne_s[2];   /**< since the foot left the ground; 0 on it */
     bool step_open;        /**< a heel strike was seen and the velocity was known ever since */
     bool v_comp_known, half_step_known; /**< step_width_m goes with half_step_m */
+    bool struck;           /**< a heel strike came with the last measurement */
+    bool disturbed;        /**< set by the supervisor: the step now made tells no walking speed, so
+                                that v_comp_m_s does not follow a fall */
     bool stands;           /**< was seen to stand, and no step was completed since */
     uint8_t stance;        /**< saddle_side_t: the only foot on the ground, else the one that landed last */
 } saddle_step_tracker_t;
@@ -165,15 +169,29 @@ typedef struct {
 
 /* ---- balance -------------------------------------------------------------------------------- */
 
+/** How the walk is learned. */
+typedef struct {
+    saddle_learned_walk_t walk;
+    saddle_vec2_t velocity_m_s; /**< last measured */
+    float ripple_square;
+    float watched_s, walked_s; /**< learned from, up to the forgetting time */
+    float last_height_m, climb_m_s; /**< vertical velocity of the CoM, over a tick of 80 ms */
+    float lowest_margin;       /**< since the last heel strike */
+    bool height_known;         /**< the last tick measured the CoM */
+    bool begun;
+} saddle_learning_t;
+
 typedef struct {
     uint8_t level, reason;       /**< announced */
     uint8_t caution_reason;      /**< of the last caution */
+    uint8_t unstable_reason;     /**< and of the last unstable tick */
     uint8_t at_least_ticks[4];   /**< for how long the level has been this one or worse */
     uint8_t at_most_ticks[4];    /**< and this one or better */
 } saddle_level_state_t;
 
 typedef struct {
     saddle_step_tracker_t steps;
+    saddle_learning_t learning;
     saddle_level_state_t level;
 } saddle_supervisor_t;
 

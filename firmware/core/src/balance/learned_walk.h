@@ -1,0 +1,22 @@
+/** [E32] The wearer's own walk, learned while it is steady: what "usual" means wherever a number is. */
+#ifndef SADDLEWALK_LEARNED_WALK_H
+#define SADDLEWALK_LEARNED_WALK_H
+
+#include <saddlewalk/private/context.h>
+
+/** Before anything is learned. */
+void saddle_learning_init(saddle_learning_t *learning, const saddle_model_t *model);
+
+/** The CoM was not measured, or ticks are missing: nothing is known of its vertical velocity. */
+void saddle_learning_gap(saddle_learning_t *learning);
+
+/** Take a measured CoM: its vertical velocity, and at the first one all that is usual. */
+void saddle_learning_watch(saddle_learning_t *learning, const saddle_measurement_t *measurement,
+                           float dt_s);
+
+/** Learn from a CoM that was watched. margin: of this tick, before the plan has a say. The mean
+ *  follows whatever happens; ripple and steps only above learn_margin. */
+void saddle_learning_update(saddle_learning_t *learning, const saddle_model_t *model,
+                            const saddle_step_tracker_t *steps, float margin, float dt_s);
+
+#endif

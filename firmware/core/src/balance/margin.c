@@ -1,0 +1,92 @@
+#include "balance/margin.h"
+
+#include "math/elementary.h"
+#include "math/vec2.h"
+
+#include <math.h>
+
+/* What the plan says of a step counts up to here, in CoM heights: beyond it a fall is no nearer. */
+#define PLAN_MARGIN_MIN (-0.5f)
+#define PLAN_MARGIN_MAX 0.2f
+
+/* Share of the usual lowest margin at which a caution begins, and of caution_margin at least. */
+#define OWN_CAUTION_SHARE 0.8f
+#define LEAST_CAUTION_SHARE 0.25f
+
+/* [E33] */
+saddle_departure_t saddle_departure(const saddle_model_t *model, const saddle_learning_t *learning,
+                                    const saddle_measurement_t *measurement)
+{
+    const saddle_config_t *config = &model->config;
+    const saddle_learned_walk_t *walk = &learning->walk;
+    const saddle_vec2_t left_m = measurement->foot[SADDLE_LEFT].cop_m;
+    const saddle_vec2_t right_m = measurement->foot[SADDLE_RIGHT].cop_m;
+    const float per_height = 1.0f / walk->height_m;
+    const float per_speed = 1.0f / sqrtf(SADDLE_GRAVITY_M_S2 * walk->height_m);
+    const saddle_vec2_t from_middle_m =
+        saddle_vec2_scale(-0.5f, saddle_vec2_add(left_m, right_m));
+    const saddle_vec2_t unusual_m_s =
+        saddle_vec2_sub(measurement->com.velocity_m_s, walk->velocity_m_s);
+    const float apart_m = saddle_vec2_length(saddle_vec2_sub(left_m, right_m));
+    saddle_departure_t departure;
+    departure.offset = saddle_vec2_add(
+        saddle_vec2_scale(per_height, from_middle_m),
+        saddle_vec2_scale(config->departure_foresight * per_speed, unusual_m_s));
+    departure.offset.y *= config->departure_lateral_weight;
+    departure.step = 0.5f * config->departure_step_share * apart_m * per_height;
+    departure.sink = config->departure_sink_share * per_speed *
+                     saddle_larger(0.0f, -learning->climb_m_s);
+    return departure;
+}
+
+/* [E34] */
+static float tolerance(const saddle_config_t *config, float ripple)
+{
+    const float borne = config->tolerance_max - config->tolerance_ripple_slope * ripple;
+    return saddle_larger(borne, config->tolerance_min);
+}
+
+float saddle_own_margin(const saddle_model_t *model, const saddle_learning_t *learning,
+                         const saddle_departure_t *departure)
+{
+    return tolerance(&model->config, learning->walk.ripple) -
+           (saddle_vec2_length(departure->offset) - departure->step + departure->sink);
+}
+
+/* [E35] */
+float saddle_plan_margin(const saddle_model_t *model, const saddle_learning_t *learning,
+                         const saddle_verdict_t *verdict)
+{
+    const float per_height = 1.0f / learning->walk.height_m;
+    const float recovery = verdict->recovery.margin_m * per_height;
+    const float landing = verdict->ebos_com_m * per_height;
+    return saddle_clamp(recovery, PLAN_MARGIN_MIN, PLAN_MARGIN_MAX) +
+           saddle_clamp(landing, PLAN_MARGIN_MIN, PLAN_MARGIN_MAX) + model->config.plan_reserve;
+}
+
+saddle_reason_t saddle_driver(const saddle_departure_t *departure, float plan)
+{
+    const float ap = saddle_magnitude(departure->offset.x);
+    const float ml = saddle_magnitude(departure->offset.y);
+    const float largest = saddle_larger(ap, ml);
+    if (-plan > saddle_larger(largest, departure->sink)) {
+        return SADDLE_REASON_NO_STEP;
+    }
+    if (departure->sink > largest) {
+        return SADDLE_REASON_SINKING;
+    }
+    if (ml > ap) {
+        return departure->offset.y > 0.0f ? SADDLE_REASON_LEFT : SADDLE_REASON_RIGHT;
+    }
+    return departure->offset.x > 0.0f ? SADDLE_REASON_FORWARD : SADDLE_REASON_BACKWARD;
+}
+
+/* [E31] */
+float saddle_caution_below(const saddle_model_t *model, const saddle_learning_t *learning)
+{
+    const float usual = learning->walk.step_margin;
+    const float band = model->config.caution_margin;
+    return usual > 0.0f
+               ? saddle_clamp(OWN_CAUTION_SHARE * usual, LEAST_CAUTION_SHARE * band, band)
+               : band;
+}
