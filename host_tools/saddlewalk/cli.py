@@ -12,13 +12,14 @@ from saddlewalk import __version__, commands
 from saddlewalk.errors import UserError
 from saddlewalk.outputs import check_files
 from saddlewalk.paths import need_checkout
+from saddlewalk.printable import printable
 
 
 class _Parser(argparse.ArgumentParser):
     """A wrong option is one line, not a page of usage."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+        self.exit(2, f"{self.prog}: {printable(message)} (see {self.prog} --help)\n")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -60,13 +61,13 @@ def main(argv: list[str] | None = None) -> int:
         sys.stdout.flush()
         return status
     except UserError as error:
-        print(f"saddlewalk {args.command}: {error}", file=sys.stderr)
+        print(f"saddlewalk {args.command}: {printable(error)}", file=sys.stderr)
         return 2
     except BrokenPipeError:
         _forget_output()
         return 1
     except OSError as error:  # what no command foresaw, as a full disk under standard output
-        print(f"saddlewalk {args.command}: {error}", file=sys.stderr)
+        print(f"saddlewalk {args.command}: {printable(error)}", file=sys.stderr)
         _forget_output()
         return 2
     except KeyboardInterrupt:

@@ -10,8 +10,9 @@ import lcm
 import pytest
 
 from saddlewalk.cli import main
-from saddlewalk.logs.messages import decode, load_lcm_log
+from saddlewalk.logs.messages import decode
 from saddlewalk.logs.tables import columns_of, element_names
+from saddlewalk.transport.lcm_log import LcmLog
 
 CHANNELS = {"bos", "config", "health", "input", "plan", "scores", "truth", "verdict"}
 
@@ -22,7 +23,7 @@ def export(walk: Path, form: str, out: Path) -> int:
 
 def messages(walk: Path, name: str) -> list[tuple[int, object]]:
     """(when it was logged, message) of a channel."""
-    events = load_lcm_log(walk / "walk.lcmlog").records
+    events = LcmLog(walk / "walk.lcmlog")
     channel = f"SADDLEWALK_{name.upper()}"
     return [(event.logged_us, decode(event)) for event in events if event.channel == channel]
 

@@ -14,9 +14,9 @@ import pytest
 from host_node import own_lcm
 from saddlewalk import paths
 from saddlewalk.cli import main
-from saddlewalk.logs.messages import load_lcm_log
 from saddlewalk.transport import wire
 from saddlewalk.transport.bus import private_udp
+from saddlewalk.transport.lcm_log import LcmLog
 
 TICKS = 163  # of 13 s
 OUTPUTS = TICKS * 5
@@ -46,7 +46,7 @@ class Changed:
 
 
 def events_of(walk: Path) -> list:
-    return load_lcm_log(walk / "walk.lcmlog").records
+    return list(LcmLog(walk / "walk.lcmlog"))
 
 
 def test_a_log_is_equal_to_the_bit(walk, capsys):

@@ -7,6 +7,7 @@ from typing import Any
 
 from saddlewalk.logs.run_files import TABLE_FORMATS, exported, table_names
 from saddlewalk.outputs import Output, OutputFile, OutputFolder, add_input, add_output
+from saddlewalk.printable import printable
 
 
 def add_parser(subparsers: Any) -> None:
@@ -34,26 +35,26 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from saddlewalk.errors import UserError
-    from saddlewalk.logs import tables as log_tables
-    from saddlewalk.logs.messages import load_lcm_log
+    from saddlewalk.logs.tables import export, tables_of
+    from saddlewalk.transport.lcm_log import LcmLog
 
-    log = load_lcm_log(args.log)
-    tables, left_out = log_tables.tables_of(log.records)
+    log = LcmLog(args.log)
+    tables, others = tables_of(log)
     if not tables:
         raise UserError(
-            f"{args.log}: none of its {len(log.records)} messages, on {', '.join(left_out)}, is of "
+            f"{args.log}: none of its {log.events} messages, on {', '.join(others)}, is of "
             "a type of saddlewalk's"
         )
-    write = getattr(log_tables, f"write_{args.format}")
     told = sys.stderr if str(args.out) == "-" else sys.stdout
-    for path in write(tables, args.out):
-        print(path, file=told)
+    for path in export(log, tables, args.format, args.out):
+        print(printable(path), file=told)
     remarks = [
-        f"left out: {n} messages on {name}, of no type of ours" for name, n in left_out.items()
+        f"left out: {count} messages on {channel}, of no type of ours"
+        for channel, count in others.items()
     ]
     remarks += [f"incomplete: {log.broken}"] if log.broken else []
     for remark in remarks:
-        print(remark, file=sys.stderr)
+        print(printable(remark), file=sys.stderr)
     return 1 if log.broken else 0
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from saddlewalk.config import add_body_options
 from saddlewalk.errors import UserError
 from saddlewalk.outputs import add_input
+from saddlewalk.printable import printable
 
 if TYPE_CHECKING:
     from saddlewalk.logs.rerun import Report
@@ -30,22 +31,23 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from saddlewalk.config import load_config
-    from saddlewalk.logs.messages import is_lcm_log, load_can_log, load_lcm_log
+    from saddlewalk.logs.can_log import CanLog
+    from saddlewalk.transport.lcm_log import LcmLog, is_lcm_log
 
     if is_lcm_log(args.log):
         from saddlewalk.logs.rerun import rerun_lcm
 
         _refuse_body_options(args)
-        log = load_lcm_log(args.log)
-        report = _named(args.log, rerun_lcm, log.records)
+        log = LcmLog(args.log)
+        report = _named(args.log, rerun_lcm, log)
     else:
         from saddlewalk.logs.rerun_can import rerun_can
 
-        log = load_can_log(args.log)
-        report = _named(args.log, rerun_can, log.records, load_config(args))
+        log = CanLog(args.log)
+        report = _named(args.log, rerun_can, log, load_config(args))
     if log.broken:
-        report.gaps.append(log.broken)
-    print("\n".join(told(report)))
+        report.lacks(log.broken)
+    print("\n".join(map(printable, told(report))))
     return 0 if report.sound else 1
 
 

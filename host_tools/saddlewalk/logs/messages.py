@@ -1,119 +1,88 @@
-"""Logs of runs, read to their end: LCM event logs, and CAN logs as python-can reads them."""
+"""The messages that a log's events hold, by the LCM types of saddlewalk."""
 
-from collections.abc import Iterator
+import functools
+from collections import Counter
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-import can
-import lcm
+import numpy as np
 
-from saddlewalk.errors import UserError
-from saddlewalk.standard_error import standard_error_silent
+from saddlewalk.transport.lcm_log import Event
 
-LCM_START = bytes.fromhex("eda1da01")
 CHANNEL_PREFIX = "SADDLEWALK_"
-_EVENT_HEADER = 28  # bytes before the channel and the data
+MESSAGE_MAX = 1 << 14  # bytes; the longest, config_t, has some 3000
+NAMES_MAX = 50  # of channels that are not ours, counted one by one
+FURTHER = "further channels"
+_NUMPY = {"float": ">f4", "double": ">f8", "byte": "u1", "boolean": "i1"} | {
+    f"int{bits}_t": f">i{bits // 8}" for bits in (8, 16, 32, 64)
+}
+_FINGERPRINT = "fingerprint"
 
 
 @dataclass(frozen=True)
-class Event:
-    """One message of an LCM log."""
+class Kind:
+    """The messages of one channel."""
 
-    logged_us: int
     channel: str
-    data: bytes
+    type: Any  # the generated class
+    layout: np.dtype | None  # of the encoded message; None: its size varies
+
+    @property
+    def name(self) -> str:
+        """As `plan`, of SADDLEWALK_PLAN."""
+        return self.channel.removeprefix(CHANNEL_PREFIX).lower()
+
+    @functools.cached_property
+    def fingerprint(self) -> bytes:
+        return self.type._get_packed_fingerprint()
+
+    def is_whole(self, data: bytes) -> bool:
+        """Whether data of a fixed layout is such a message."""
+        return len(data) == self.layout.itemsize and data.startswith(self.fingerprint)
+
+    def decode(self, data: bytes) -> Any:
+        """None if it is not such a message."""
+        if len(data) > MESSAGE_MAX or (self.layout is not None and not self.is_whole(data)):
+            return None
+        try:
+            return self.type.decode(data)
+        except Exception:  # the generated decoders raise ValueError, struct.error or IndexError
+            return None
 
 
-@dataclass(frozen=True)
-class Log:
-    """What could be read of a log, and in words what could not; empty: it was read to its end."""
+class Others(Counter[str]):
+    """Messages that are not of a type of ours, by their channel; of any number of channels."""
 
-    records: list[Any]  # Event or can.Message
-    broken: str = ""
-
-
-def is_lcm_log(path: Path) -> bool:
-    """By its first bytes. Raises UserError for a file that is empty or cannot be read."""
-    try:
-        with path.open("rb") as file:
-            start = file.read(len(LCM_START))
-    except OSError as error:
-        raise UserError(f"{path}: {error.strerror}") from error
-    if not start:
-        raise UserError(f"{path} is empty: give a log with something in it")
-    return start == LCM_START
+    def add(self, channel: str) -> None:
+        self[channel if channel in self or len(self) < NAMES_MAX else FURTHER] += 1
 
 
-def load_lcm_log(path: Path) -> Log:
-    """Every event of an LCM log. Raises UserError if there is none."""
-    if not is_lcm_log(path):
-        raise UserError(f"{path} is no LCM log: give one of lcm-logger or of `saddlewalk demo`")
-    with standard_error_silent():
-        events, broken = _collect(_lcm_events(path))
-    left = path.stat().st_size - sum(map(_size, events))
-    if left and not broken:
-        broken = f"{left} bytes of the log are no event, as where one was cut or damaged"
-    if not events:
-        raise UserError(f"{path}: not one event of it can be read: {broken}")
-    return Log(events, broken)
+@functools.cache
+def kinds() -> dict[str, Kind]:
+    """By the channel that carries them."""
+    from saddlewalk.transport import lcm_types
 
-
-def load_can_log(path: Path) -> Log:
-    """Every frame of a CAN log, of the format that its suffix names. Raises UserError if none."""
-    try:
-        reader = can.LogReader(path)
-    except OSError as error:
-        raise UserError(f"{path}: {error.strerror}") from error
-    except Exception as error:  # each format's reader has errors of its own
-        raise UserError(
-            f"{path} is neither an LCM log nor a CAN log that python-can reads "
-            f"(.log of candump, .blf, .asc, .trc, .csv, .db): {_one_line(error)}"
-        ) from error
-    with reader:
-        frames, broken = _collect(reader)
-    if not frames:
-        raise UserError(f"{path} holds no CAN frame{broken and f': {broken}'}")
-    return Log(frames, broken)
+    found = {}
+    for type_name, generated in vars(lcm_types).items():
+        if hasattr(generated, "__typenames__"):
+            channel = CHANNEL_PREFIX + type_name.removesuffix("_t").upper()
+            found[channel] = Kind(channel, generated, _layout(generated))
+    return found
 
 
 def decode(event: Event) -> Any:
     """The message of an event, by its channel's type; None if it is none of that type."""
-    from saddlewalk.transport import lcm_types
-
-    name = f"{event.channel.removeprefix(CHANNEL_PREFIX).lower()}_t"
-    message_type = getattr(lcm_types, name, None)
-    if message_type is None or not event.channel.startswith(CHANNEL_PREFIX):
-        return None
-    try:
-        return message_type.decode(event.data)
-    except Exception:  # the generated decoders raise ValueError, struct.error or IndexError
-        return None
+    kind = kinds().get(event.channel)
+    return kind.decode(event.data) if kind else None
 
 
-def _collect(records: Any) -> tuple[list[Any], str]:
-    """What comes until a reader stumbles, and over what."""
-    collected: list[Any] = []
-    try:
-        for record in records:
-            collected.append(record)
-    except Exception as error:  # whatever a reader makes of bytes that are no log
-        return collected, f"it cannot be read on after {len(collected)} records: {_one_line(error)}"
-    return collected, ""
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split()) or type(error).__name__
-
-
-def _lcm_events(path: Path) -> Iterator[Event]:
-    log = lcm.EventLog(str(path), "r")
-    try:
-        for event in log:
-            yield Event(event.timestamp, event.channel, event.data)
-    finally:
-        log.close()
-
-
-def _size(event: Event) -> int:
-    return _EVENT_HEADER + len(event.channel.encode()) + len(event.data)
+def _layout(generated: Any) -> np.dtype | None:
+    """The encoded message, member by member, behind the fingerprint of its type."""
+    members: list[tuple] = [(_FINGERPRINT, ">u8")]
+    described = (generated.__slots__, generated.__typenames__, generated.__dimensions__)
+    for name, kind, dimensions in zip(*described, strict=True):
+        dimensions = dimensions or []
+        if kind not in _NUMPY or not all(isinstance(size, int) for size in dimensions):
+            return None
+        members.append((name, _NUMPY[kind], tuple(dimensions)))
+    return np.dtype(members)

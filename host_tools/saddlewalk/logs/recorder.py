@@ -6,7 +6,6 @@ before a failure stays.
 
 import csv
 import time
-from collections import Counter
 from pathlib import Path
 from typing import Self
 
@@ -151,18 +150,3 @@ def _planned(tick: Tick, origin_m: complex) -> list[Cell]:
         ),
         tick.plan.speed_m_s,
     ]
-
-
-def read_can_log(path: Path) -> int:
-    """How many frames a candump log holds."""
-    with can.CanutilsLogReader(path) as log:
-        return sum(1 for _ in log)
-
-
-def read_lcm_log(path: Path) -> Counter[str]:
-    """How many messages an LCM event log holds on each channel."""
-    log = lcm.EventLog(str(path), "r")
-    try:
-        return Counter(event.channel for event in log)
-    finally:
-        log.close()

@@ -15,9 +15,11 @@ from saddlewalk import __version__
 from saddlewalk.config import ANKLES
 from saddlewalk.errors import UserError
 from saddlewalk.firmware import Firmware, default_config, ffi, library
-from saddlewalk.logs.messages import Event, decode
+from saddlewalk.logs.messages import decode
 from saddlewalk.ticks import TICK_S
+from saddlewalk.transport.lcm_log import Event
 
+GAPS_MAX = 20  # told one by one
 HEALTH_FIELDS = ("tick", "status", "limits", "faults")  # the core's; the others are the host's
 _PACKED = {"float": ">f", "double": ">d", "int8_t": ">b", "int32_t": ">i", "int64_t": ">q"}
 
@@ -48,17 +50,19 @@ class Report:
     compared: int = 0  # messages or frames
     different_ticks: int = 0
     first: Difference | None = None
-    gaps: list[str] = field(default_factory=list)
-    missing: dict[str, list[int]] = field(default_factory=dict)  # output -> ticks without it
+    gaps: list[str] = field(default_factory=list)  # the first of them
+    further_gaps: int = 0
+    missing: dict[str, "Missing"] = field(default_factory=dict)  # by the output's name
 
     @property
     def not_compared(self) -> list[str]:
         """In words, what of the log could not be compared; empty: nothing."""
+        further = [f"{self.further_gaps} further gaps"] if self.further_gaps else []
         lost = (
-            f"{name} of {len(ticks)} ticks is not in the log, the first time of tick {ticks[0]}"
-            for name, ticks in self.missing.items()
+            f"{name} of {lack.ticks} ticks is not in the log, the first time of tick {lack.first}"
+            for name, lack in self.missing.items()
         )
-        return [*self.gaps, *lost]
+        return [*self.gaps, *further, *lost]
 
     @property
     def sound(self) -> bool:
@@ -68,6 +72,25 @@ class Report:
     def differs(self, difference: Difference) -> None:
         self.first = self.first or difference
         self.different_ticks += 1
+
+    def lacks(self, gap: str) -> None:
+        """A part of the log that cannot be compared, in words."""
+        if len(self.gaps) < GAPS_MAX:
+            self.gaps.append(gap)
+        else:
+            self.further_gaps += 1
+
+    def misses(self, name: str, tick: int) -> None:
+        """A tick without an output."""
+        self.missing.setdefault(name, Missing(tick)).ticks += 1
+
+
+@dataclass
+class Missing:
+    """Ticks without an output."""
+
+    first: int
+    ticks: int = 0
 
 
 @dataclass
@@ -153,7 +176,7 @@ class _LcmRerun:
     def end_run(self) -> None:
         """Tell what of the run could not be computed."""
         if self._why:
-            self.report.gaps.append(
+            self.report.lacks(
                 f"{self._why}: ticks {self._first_unknown} to {self._last} cannot be computed"
             )
         self._why, self._firmware, self._last = "", None, None
@@ -175,7 +198,7 @@ class _LcmRerun:
 
     def _compute(self, firmware: Firmware, tick: LoggedTick) -> None:
         if tick.config and _fields(tick.config) != _fields(self._config):
-            self.report.gaps.append(f"the configuration with tick {tick.number} is another")
+            self.report.lacks(f"the configuration with tick {tick.number} is another")
         output = firmware.tick(tick.inputs)
         self.report.ticks += 1
         differences = [
@@ -191,7 +214,7 @@ class _LcmRerun:
     def _recorded(self, tick: LoggedTick, channel: str) -> Event | None:
         event = tick.outputs.get(channel)
         if event is None:
-            self.report.missing.setdefault(channel, []).append(tick.number)
+            self.report.misses(channel, tick.number)
         else:
             self.report.compared += 1
         return event

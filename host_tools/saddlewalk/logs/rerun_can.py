@@ -40,7 +40,7 @@ def rerun_can(frames: Iterable[can.Message], config: Any) -> Report:
     if not report.ticks:
         raise UserError(_nothing(report, node))
     if node.waiting and not report.gaps:
-        report.gaps.append("the log ends before the answer to its last measurements")
+        report.lacks("the log ends before the answer to its last measurements")
     return report
 
 
@@ -133,7 +133,7 @@ def _compare(report: Report, node: _Node, answer: dict[str, bytes]) -> bool:
     for identifier, data in node.firmware.frames(tick % wire.COUNTERS, *counts).items():
         name = wire.message_name(identifier)
         if name not in answer:
-            report.missing.setdefault(name, []).append(tick)
+            report.misses(name, tick)
             continue
         report.compared += 1
         if answer[name] != data and first is None:
@@ -148,13 +148,13 @@ def _in_lockstep(report: Report, node: _Node, counter: int) -> bool:
     tick = node.ticks - 1
     where = f"before answer {report.ticks}"
     if node.waiting != 1:
-        report.gaps.append(
+        report.lacks(
             f"{node.waiting} sets of measurements came {where}, in lockstep it is 1: the run was "
             "in real time (rerun its LCM log, which has the ages) or frames are missing; "
             "no more was computed"
         )
     elif counter != tick % wire.COUNTERS:
-        report.gaps.append(
+        report.lacks(
             f"answer {report.ticks} has counter {counter}, not {tick % wire.COUNTERS}: the log "
             "begins in mid-run or frames are missing; no more was computed"
         )

@@ -1,15 +1,17 @@
 """Whether a walk was sound, and if not why: what the demo says at its end."""
 
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
 from saddlewalk.emulation.exoskeleton import Exoskeleton
 from saddlewalk.emulation.wearer import MODES, STANDING, Wearer
 from saddlewalk.errors import UserError
-from saddlewalk.logs.messages import is_lcm_log, load_can_log, load_lcm_log
-from saddlewalk.logs.recorder import CHANNELS, Recorder, read_can_log, read_lcm_log
+from saddlewalk.logs.can_log import CanLog
+from saddlewalk.logs.recorder import CHANNELS, Recorder
 from saddlewalk.logs.rerun import rerun_lcm
 from saddlewalk.logs.rerun_can import rerun_can
+from saddlewalk.transport.lcm_log import LcmLog, is_lcm_log
 
 LATE_SHARE_MAX = 0.05
 Check = tuple[bool, str]  # good, and in words
@@ -47,7 +49,7 @@ def transport_checks(exoskeleton: Exoskeleton, recorder: Recorder) -> list[Check
     late, refused = int(health["LATE_TICKS"]), int(health["REJECTED_FRAMES"])
     rejected = exoskeleton.reader.receiver.rejected
     ticks = exoskeleton.ticks
-    frames = read_can_log(recorder.can_path)
+    frames = sum(1 for _ in CanLog(recorder.can_path))
     return [
         (
             rejected == refused == 0,
@@ -61,7 +63,7 @@ def transport_checks(exoskeleton: Exoskeleton, recorder: Recorder) -> list[Check
 
 def log_checks(recorder: Recorder, config: Any, by_can: bool) -> list[Check]:
     """What LCM brought, and the firmware's walk computed again from the log that has its inputs."""
-    channels = read_lcm_log(recorder.lcm_path)
+    channels = Counter(event.channel for event in LcmLog(recorder.lcm_path))
     expected = ["SADDLEWALK_TRUTH"] if by_can else CHANNELS
     missing = [name for name in expected if not channels[name]]
     return [
@@ -77,10 +79,7 @@ def log_checks(recorder: Recorder, config: Any, by_can: bool) -> list[Check]:
 def _rerun(log: Path, config: Any) -> Check:
     """Whether the logged inputs give the logged outputs again; what a log lost is only told."""
     try:
-        if is_lcm_log(log):
-            report = rerun_lcm(load_lcm_log(log).records)
-        else:
-            report = rerun_can(load_can_log(log).records, config)
+        report = rerun_lcm(LcmLog(log)) if is_lcm_log(log) else rerun_can(CanLog(log), config)
     except UserError as error:
         return False, f"{log.name} cannot be rerun: {error}"
     if report.first:

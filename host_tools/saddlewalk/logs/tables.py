@@ -3,65 +3,141 @@
 Columns are the members of the LCM type, behind `logged_s`: when the message was logged, seconds
 since 1970. An array becomes a column for each element, whose name stands before the unit:
 com_m[3] is com_x_m, com_y_m, com_z_m. Numbers that are not known are NaN.
+
+A log is read twice, block by block, so that its size does not matter: for what it holds, and to
+write it.
 """
 
+import contextlib
+import csv
+import importlib.util
 import json
-import math
-from collections import Counter
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
+
+import numpy as np
 
 from saddlewalk.atomic_write import whole_file, whole_folder
 from saddlewalk.errors import UserError
-from saddlewalk.logs.messages import CHANNEL_PREFIX, Event, decode
+from saddlewalk.logs.messages import Kind, Others, kinds
 from saddlewalk.logs.run_files import table_names
 from saddlewalk.paths import install_command
-from saddlewalk.table import write_table
+from saddlewalk.transport.lcm_log import Event
 
 UNITS = tuple(f"_{unit}" for unit in "m_s n_s m rad s us n j kg".split())  # longest first
 SIDES = ("left", "right")
 AXES = ("x", "y", "z")
 BY_SIDE = {"foot_pitch_rad"}  # pairs that are not of x and y
 
+BLOCK = 8192  # rows of a table that are held at once
+COLUMNS_MAX = 1000  # of SADDLEWALK_CONFIG, which names its own
+LOGGED = "logged_s"
 TIME_MAX_NS = 2**64 - 1  # of MCAP
 
 Value = float | int | str
 
 
-@dataclass
-class Table:
-    """One channel of a log."""
+@dataclass(frozen=True)
+class Block:
+    """Rows of a table."""
 
-    channel: str
-    kinds: dict[str, str] = field(default_factory=dict)  # column -> LCM's name of its type
-    rows: list[dict[str, Value]] = field(default_factory=list)
+    logged_us: np.ndarray
+    columns: dict[str, Any]  # of each an array, or a list in which None is no value
+
+    def lists(self, unknown: Callable[[Any], Any]) -> Iterator[list[Value | None]]:
+        """The columns, with None for the floats that are `unknown`."""
+        for values in self.columns.values():
+            listed = values if isinstance(values, list) else values.tolist()
+            if isinstance(values, list):
+                listed = [None if isinstance(v, float) and unknown(v) else v for v in values]
+            elif values.dtype.kind == "f":
+                for index in np.flatnonzero(unknown(values)).tolist():
+                    listed[index] = None
+            yield listed
+
+
+class Table:
+    """One channel of a log, a block of rows at a time."""
+
+    def __init__(self, kind: Kind) -> None:
+        self.channel, self.name = kind.channel, kind.name
+        self.kinds = {LOGGED: "double"}  # column -> LCM's name of its type
+        self._kind = kind
+        self._logged_us: list[int] = []
+        self._rows: list[Any] = []  # encoded messages of a fixed layout, else cells
+        if kind.layout is not None:
+            self.kinds |= {name: of for name, (of, _) in columns_of(kind.type()).items()}
+
+    def learn(self, event: Event) -> bool:
+        """Whether it is a row; one that names columns of its own adds them to the table's."""
+        row = self._row(event)
+        if row is None or isinstance(row, bytes):
+            return row is not None
+        if len(self.kinds.keys() | row.keys()) > COLUMNS_MAX:
+            return False
+        for column, (kind, _) in row.items():
+            self.kinds.setdefault(column, kind)
+        return True
+
+    def add(self, event: Event) -> None:
+        """Take an event if it is a row of the columns that were learnt."""
+        row = self._row(event)
+        if isinstance(row, bytes) or (row is not None and row.keys() <= self.kinds.keys()):
+            self._logged_us.append(event.logged_us)
+            self._rows.append(row)
 
     @property
-    def name(self) -> str:
-        """As a file is named: plan, scores, ..."""
-        return self.channel.removeprefix(CHANNEL_PREFIX).lower()
+    def full(self) -> bool:
+        return len(self._rows) >= BLOCK
 
-    def add(self, event: Event, message: Any) -> None:
-        columns = _config_columns if self.name == "config" else columns_of
-        cells = {"logged_s": ("double", event.logged_us / 1e6), **columns(message)}
-        for column, (kind, _) in cells.items():
-            self.kinds.setdefault(column, kind)
-        self.rows.append({column: value for column, (_, value) in cells.items()})
+    def take(self) -> Block:
+        """The rows since the last block."""
+        rows, logged_us = self._rows, np.array(self._logged_us, np.int64)
+        self._rows, self._logged_us = [], []
+        columns = self._lists(rows) if self._kind.layout is None else self._arrays(rows)
+        return Block(logged_us, {LOGGED: logged_us / 1e6, **columns})
 
-
-def tables_of(events: Iterable[Event]) -> tuple[list[Table], Counter[str]]:
-    """Tables in the order of their channels' names, and how many messages have no type of ours."""
-    tables: dict[str, Table] = {}
-    left_out: Counter[str] = Counter()
-    for event in events:
-        message = decode(event)
+    def _row(self, event: Event) -> Any:
+        if self._kind.layout is not None:
+            return event.data if self._kind.is_whole(event.data) else None
+        message = self._kind.decode(event.data)
         if message is None:
-            left_out[event.channel] += 1
+            return None
+        cells = _config_columns(message) if self.name == "config" else columns_of(message)
+        cells.pop(LOGGED, None)
+        return cells
+
+    def _lists(self, rows: list[dict]) -> dict[str, Any]:
+        columns = [column for column in self.kinds if column != LOGGED]
+        return {column: [row.get(column, (None, None))[1] for row in rows] for column in columns}
+
+    def _arrays(self, rows: list[bytes]) -> dict[str, Any]:
+        messages = np.frombuffer(b"".join(rows), self._kind.layout)
+        columns: dict[str, Any] = {}
+        for name in self._kind.type.__slots__:
+            values = messages[name].astype(messages[name].dtype.newbyteorder("="))
+            if values.ndim == 1:
+                columns[name] = values
+            else:
+                parts = element_names(name, values.shape[1])
+                columns |= dict(zip(parts, values.T, strict=True))
+        return columns
+
+
+def tables_of(events: Iterable[Event]) -> tuple[dict[str, Table], Others]:
+    """Empty tables in the order of their channels, and the messages that are of no type of ours."""
+    tables: dict[str, Table] = {}
+    others = Others()
+    for event in events:
+        kind = kinds().get(event.channel)
+        table = tables.get(event.channel) or (Table(kind) if kind else None)
+        if table and table.learn(event):
+            tables[event.channel] = table
         else:
-            tables.setdefault(event.channel, Table(event.channel)).add(event, message)
-    return [tables[channel] for channel in sorted(tables)], left_out
+            others.add(event.channel)
+    return {channel: tables[channel] for channel in sorted(tables)}, others
 
 
 def columns_of(message: Any) -> dict[str, tuple[str, Value]]:
@@ -79,12 +155,11 @@ def columns_of(message: Any) -> dict[str, tuple[str, Value]]:
 
 def _config_columns(config: Any) -> dict[str, tuple[str, Value]]:
     """Those of config_t, which has the names of its fields beside their values."""
-    single = ("utime_us", "library_version", "wire_version", "lockstep", "ankle")
     kinds = dict(zip(config.__slots__, config.__typenames__, strict=True))
+    members = ("utime_us", "library_version", "wire_version", "lockstep", "ankle")
+    single = {name: (kinds[name], getattr(config, name)) for name in members}
     named = zip(config.name, config.value, strict=True)
-    return {name: (kinds[name], getattr(config, name)) for name in single} | {
-        name: (kinds["value"], value) for name, value in named
-    }
+    return single | {name: (kinds["value"], value) for name, value in named} | single
 
 
 def element_names(name: str, count: int) -> list[str]:
@@ -97,70 +172,123 @@ def element_names(name: str, count: int) -> list[str]:
     return [f"{stem}_{part}{unit}" for part in parts[:count]]
 
 
-def write_csv(tables: list[Table], folder: Path) -> list[Path]:
-    """FOLDER/plan.csv and so on; an unknown number is an empty cell."""
-    with whole_folder("--out", folder, table_names("csv")) as new:
-        for table in tables:
-            rows = ([row.get(column) for column in table.kinds] for row in table.rows)
-            write_table(str(new / f"{table.name}.csv"), list(table.kinds), rows)
-    return [folder / f"{table.name}.csv" for table in tables]
+class Writer(Protocol):
+    """Files of some format, one at least, open for all the tables of a log."""
+
+    paths: list[Path]
+
+    def write(self, table: Table, block: Block) -> None: ...
+
+    def finish(self) -> None: ...
 
 
-def write_parquet(tables: list[Table], folder: Path) -> list[Path]:
-    """FOLDER/plan.parquet and so on, each column of its LCM type."""
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError as error:
-        raise _missing("parquet", "pyarrow") from error
-    arrow = {"float": "float32", "double": "float64"}
-    with whole_folder("--out", folder, table_names("parquet")) as new:
-        for table in tables:
-            columns = {
-                column: pyarrow.array(
-                    [row.get(column) for row in table.rows],
-                    pyarrow.type_for_alias(arrow.get(kind, kind.removesuffix("_t"))),
-                )
-                for column, kind in table.kinds.items()
-            }
-            pyarrow.parquet.write_table(pyarrow.table(columns), new / f"{table.name}.parquet")
-    return [folder / f"{table.name}.parquet" for table in tables]
-
-
-def write_mcap(tables: list[Table], path: Path) -> list[Path]:
-    """One file of JSON messages with a JSON schema a channel; an unknown number is left out."""
-    try:
-        from mcap.writer import Writer
-    except ImportError as error:
-        raise _missing("mcap", "mcap") from error
-    with whole_file("--out", path, "wb") as file:
-        writer = Writer(file)
-        writer.start(library="saddlewalk")
-        for table in tables:
-            _add_channel(writer, table)
+def export(log: Iterable[Event], tables: dict[str, Table], form: str, out: Path) -> list[Path]:
+    """Write the tables of a log; returns the files, each of which is whole or was not touched."""
+    missing = {"csv": None, "parquet": "pyarrow", "mcap": "mcap"}[form]
+    if missing and not importlib.util.find_spec(missing):
+        raise _missing(form, missing)
+    with contextlib.ExitStack() as files:
+        writer = _WRITERS[form](list(tables.values()), out, files)
+        for event in log:
+            if table := tables.get(event.channel):
+                table.add(event)
+                if table.full:
+                    writer.write(table, table.take())
+        for table in tables.values():
+            writer.write(table, table.take())
         writer.finish()
-    return [path]
+    return writer.paths
 
 
-def _add_channel(writer: Any, table: Table) -> None:
-    schema = {
-        "type": "object",
-        "title": table.name,
-        "properties": {column: {"type": _json_type(kind)} for column, kind in table.kinds.items()},
-    }
-    schema_id = writer.register_schema(
-        f"saddlewalk.{table.name}", "jsonschema", json.dumps(schema).encode()
-    )
-    channel_id = writer.register_channel(table.channel, "json", schema_id)
-    for sequence, row in enumerate(table.rows):
-        known = {name: value for name, value in row.items() if _is_known(value)}
-        time_ns = min(max(0, round(row["logged_s"] * 1e6) * 1000), TIME_MAX_NS)
-        data = json.dumps(known, allow_nan=False).encode()
-        writer.add_message(channel_id, time_ns, data, time_ns, sequence)
+class _CsvFiles:
+    """FOLDER/plan.csv and so on; an unknown number is an empty cell."""
+
+    def __init__(self, tables: list[Table], folder: Path, files: contextlib.ExitStack) -> None:
+        self.paths = [folder / f"{table.name}.csv" for table in tables]
+        new = files.enter_context(whole_folder("--out", folder, table_names("csv")))
+        self._writers = {}
+        for table in tables:
+            file = files.enter_context((new / f"{table.name}.csv").open("w", newline=""))
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(table.kinds)
+            self._writers[table.name] = writer
+
+    def write(self, table: Table, block: Block) -> None:
+        self._writers[table.name].writerows(zip(*block.lists(np.isnan), strict=True))
+
+    def finish(self) -> None:
+        pass
 
 
-def _is_known(value: Value) -> bool:
-    return isinstance(value, str) or math.isfinite(value)
+class _ParquetFiles:
+    """FOLDER/plan.parquet and so on, each column of its LCM type."""
+
+    def __init__(self, tables: list[Table], folder: Path, files: contextlib.ExitStack) -> None:
+        import pyarrow.parquet
+
+        self.paths = [folder / f"{table.name}.parquet" for table in tables]
+        new = files.enter_context(whole_folder("--out", folder, table_names("parquet")))
+        self._writers = {}
+        for table in tables:
+            schema = pyarrow.schema(
+                (column, pyarrow.type_for_alias(_ARROW.get(kind, kind.removesuffix("_t"))))
+                for column, kind in table.kinds.items()
+            )
+            file = files.enter_context((new / f"{table.name}.parquet").open("wb"))
+            self._writers[table.name] = pyarrow.parquet.ParquetWriter(file, schema)
+
+    def write(self, table: Table, block: Block) -> None:
+        import pyarrow
+
+        writer = self._writers[table.name]
+        arrays = [
+            pyarrow.array(values, field.type)
+            for values, field in zip(block.columns.values(), writer.schema, strict=True)
+        ]
+        writer.write_batch(pyarrow.record_batch(arrays, schema=writer.schema))
+
+    def finish(self) -> None:
+        for writer in self._writers.values():
+            writer.close()
+
+
+class _McapFile:
+    """One file of JSON messages with a JSON schema a channel; an unknown number is left out."""
+
+    def __init__(self, tables: list[Table], path: Path, files: contextlib.ExitStack) -> None:
+        from mcap.writer import Writer
+
+        self.paths = [path]
+        self._writer = Writer(files.enter_context(whole_file("--out", path, "wb")))
+        self._writer.start(library="saddlewalk")
+        self._channels = {table.name: self._channel(table) for table in tables}
+        self._rows = dict.fromkeys(self._channels, 0)
+
+    def _channel(self, table: Table) -> int:
+        properties = {column: {"type": _json_type(kind)} for column, kind in table.kinds.items()}
+        schema = {"type": "object", "title": table.name, "properties": properties}
+        schema_id = self._writer.register_schema(
+            f"saddlewalk.{table.name}", "jsonschema", json.dumps(schema).encode()
+        )
+        return self._writer.register_channel(table.channel, "json", schema_id)
+
+    def write(self, table: Table, block: Block) -> None:
+        columns = block.lists(lambda values: ~np.isfinite(values))
+        rows = zip(block.logged_us.tolist(), *columns, strict=True)
+        for sequence, (logged_us, *row) in enumerate(rows, start=self._rows[table.name]):
+            known = {n: v for n, v in zip(table.kinds, row, strict=True) if v is not None}
+            time_ns = min(max(0, logged_us) * 1000, TIME_MAX_NS)
+            data = json.dumps(known, allow_nan=False).encode()
+            channel = self._channels[table.name]
+            self._writer.add_message(channel, time_ns, data, time_ns, sequence)
+        self._rows[table.name] += len(block.logged_us)
+
+    def finish(self) -> None:
+        self._writer.finish()
+
+
+_WRITERS = {"csv": _CsvFiles, "parquet": _ParquetFiles, "mcap": _McapFile}
+_ARROW = {"float": "float32", "double": "float64"}
 
 
 def _json_type(kind: str) -> str:

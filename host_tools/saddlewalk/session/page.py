@@ -10,13 +10,15 @@ import numpy as np
 from saddlewalk import __version__, html_page
 from saddlewalk.config import ANKLES
 from saddlewalk.html_page import table
+from saddlewalk.printable import printable
 from saddlewalk.session import quality
 from saddlewalk.session.pictures import draw
-from saddlewalk.session.runs import Run, Session, Span
-from saddlewalk.session.steps import QUANTITIES, SIDES, Step, Way, variability, walked
+from saddlewalk.session.runs import NO_NUMBER, Run, Session, Spans
+from saddlewalk.session.steps import QUANTITIES, SIDES, Steps, Way, variability, walked
 from saddlewalk.verdict import LEVELS
 
 TITLE = "Session report"
+LISTED = 200  # alarms, and gaps: the worst ones
 NO_DEVICE = (
     "**Saddlewalk is no medical device.** It has not been certified or tried on patients, and this "
     "page is no diagnosis: it tells what one log holds."
@@ -67,7 +69,7 @@ def write_page(log: Path, session: Session) -> str:
             f"## Data quality\n\n{_quality(run, found)}\n\n{shown.get('troubles', '')}",
             f"## Configuration\n\n{_configuration(run)}",
         ]
-    return html_page.page(f"{TITLE}: {_name(log)}", "\n\n".join(sections), embedded)
+    return html_page.page(f"{TITLE}: {printable(_name(log))}", "\n\n".join(sections), embedded)
 
 
 def in_words(session: Session) -> Iterator[str]:
@@ -76,7 +78,7 @@ def in_words(session: Session) -> Iterator[str]:
         way = walked(run)
         levels = ", ".join(f"{name} {held_s:.1f} s" for name, held_s in time_in_levels(run).items())
         told = f"{len(way.steps)} steps, {way.distance_m:.1f} m" if way else "steps not known"
-        yield f"{len(run.ticks)} ticks, {run.duration_s:.1f} s, {told}; {levels}"
+        yield f"{run.ticks} ticks, {run.duration_s:.1f} s, {told}; {levels}"
 
 
 def time_in_levels(run: Run) -> dict[str, float]:
@@ -90,10 +92,11 @@ def time_in_levels(run: Run) -> dict[str, float]:
     return times_s | {name: held_s for name, held_s in rest.items() if held_s > 0}
 
 
-def alarms(run: Run) -> list[Span]:
+def alarms(run: Run) -> Spans:
     """Each time that the level was not stable: caution, unstable, unknown."""
-    troubled = {LEVELS.index(name) for name in LEVELS if name != "stable"}
-    return [span for span in run.spans(run.levels) if span.value in troubled]
+    troubled = [LEVELS.index(name) for name in LEVELS if name != "stable"]
+    spans = run.spans(run.levels)
+    return spans.where(np.isin(spans.value, troubled))
 
 
 def _name(log: Path) -> str:
@@ -102,7 +105,7 @@ def _name(log: Path) -> str:
 
 def _plain(text: str) -> str:
     """Of a log: text that is shown as it is, whatever it would mean in Markdown or HTML."""
-    return "".join(c if c.isalnum() or c in " .,:-" else f"&#{ord(c)};" for c in text)
+    return "".join(c if c.isalnum() or c in " .,:-" else f"&#{ord(c)};" for c in printable(text))
 
 
 def _about(log: Path, session: Session) -> str:
@@ -113,8 +116,8 @@ def _about(log: Path, session: Session) -> str:
     ]
     if session.broken:
         lines.append(f"**The log is incomplete:** {_plain(session.broken)}.")
-    if session.truth:
-        fate = "fell" if any(message.fallen for message in session.truth) else "did not fall"
+    if session.fell is not None:
+        fate = "fell" if session.fell else "did not fall"
         lines.append(f"The wearer was emulated (SADDLEWALK_TRUTH) and {fate}.")
     if session.unreadable:
         told = ", ".join(f"{count} on {_plain(name)}" for name, count in session.unreadable.items())
@@ -142,7 +145,8 @@ def _in_short(run: Run, way: Way | None) -> str:
         ]
     else:
         rows.append(["steps, distance, speed", UNKNOWN])
-    counts = {name: sum(s.value == LEVELS.index(name) for s in alarms(run)) for name in LEVELS}
+    found = alarms(run)
+    counts = {name: int((found.value == LEVELS.index(name)).sum()) for name in LEVELS}
     told = [f"{name} {counts[name]}" for name in ("unstable", "caution", "unknown")]
     rows.append(["times that the level was", ", ".join(told) if run.has("verdict") else UNKNOWN])
     return table(("what", "how much"), rows)
@@ -162,8 +166,9 @@ def _alarms(run: Run) -> str:
     if not run.has("verdict"):
         return ""
     found = alarms(run)
-    if not found:
+    if not len(found):
         return "No alarm."
+    listed = found.worst(LISTED)
     rows = [
         [
             f"{each.start_s:.2f}",
@@ -171,40 +176,50 @@ def _alarms(run: Run) -> str:
             f"**{LEVELS[each.value]}**" if LEVELS[each.value] == "unstable" else LEVELS[each.value],
             "; ".join(map(_plain, run.reasons(each.ticks))),
         ]
-        for each in found
+        for each in listed
     ]
-    return table(("start (s)", "duration (s)", "level", "reason"), rows)
+    return table(("start (s)", "duration (s)", "level", "reason"), rows) + _not_listed(
+        len(found), "alarms: these are the worst, and of these the longest"
+    )
+
+
+def _not_listed(count: int, which: str) -> str:
+    """What a table of the first LISTED says below it if there are more."""
+    return f"\n{LISTED} of {count} {which}." if count > LISTED else ""
 
 
 def _steps(way: Way | None) -> str:
     if way is None:
         return "Neither measured feet nor a plan was logged."
     words = [_MEASURED if way.measured else _PLANNED]
-    if not way.steps:
+    if not len(way.steps):
         return "\n\n".join([*words, NO_STEPS])
-    steady = [step for step in way.steps if step.steady]
-    groups = {"all": way.steps} | ({"steady": steady} if steady else {})
-    rows = [row for name, steps in groups.items() for row in _variabilities(name, steps)]
+    steady = way.steps.steady
+    groups = {"all": np.ones(len(way.steps), bool)} | ({"steady": steady} if steady.any() else {})
+    rows = [
+        row for name, chosen in groups.items() for row in _variabilities(name, way.steps, chosen)
+    ]
     header = ("steps", "foot", "what", "number", "mean", "SD", "CV")
-    return "\n\n".join([_STEPS, *words, *([_STEADY] if steady else []), table(header, rows)])
+    return "\n\n".join([_STEPS, *words, *([_STEADY] if steady.any() else []), table(header, rows)])
 
 
-def _variabilities(group: str, steps: Sequence[Step]) -> Iterator[list[str]]:
-    sides = {"both": steps} | {
-        name: [step for step in steps if step.side == side] for side, name in enumerate(SIDES)
+def _variabilities(group: str, steps: Steps, chosen: np.ndarray) -> Iterator[list[str]]:
+    sides = {"both": chosen} | {
+        name: chosen & (steps.side == side) for side, name in enumerate(SIDES)
     }
     for member, label in QUANTITIES.items():
         for side, landed in sides.items():
-            told = variability([getattr(step, member) for step in landed])
+            told = variability(getattr(steps, member)[landed])
             numbers = (_known(told.mean, 3), _known(told.sd, 4), _known(100 * told.cv, 1, " %"))
             yield [group, side, label, str(told.steps), *numbers]
 
 
 def _quality(run: Run, troubles: Sequence[quality.Trouble]) -> str:
-    numbers = [tick.number for tick in run.ticks if tick.number is not None]
-    told = f"numbers {numbers[0]} to {numbers[-1]}" if numbers else "without numbers"
-    found = quality.gaps(run)
-    rows = [["ticks in the log", f"{len(run.ticks)}, {told}"]]
+    numbers = np.frombuffer(run.numbers, np.int64)
+    numbers = numbers[numbers != NO_NUMBER]
+    told = f"numbers {numbers[0]} to {numbers[-1]}" if len(numbers) else "without numbers"
+    found = quality.gaps(run, LISTED)
+    rows = [["ticks in the log", f"{run.ticks}, {told}"]]
     rows += [
         [what, words]
         for what, words in (
@@ -213,11 +228,14 @@ def _quality(run: Run, troubles: Sequence[quality.Trouble]) -> str:
         )
         if words
     ]
-    rows.append(["gaps", f"{len(found)}, {sum(gap.duration_s for gap in found):.2f} s in all"])
+    rows.append(["gaps", f"{found.count}, {found.duration_s:.2f} s in all"])
     parts = [*quality.missing(run), table(("what", "how much"), rows)]
-    if found:
-        cells = [[f"{gap.start_s:.2f}", f"{gap.duration_s:.2f}", gap.words] for gap in found]
-        parts.append(table(("gap from (s)", "duration (s)", "which"), cells))
+    if found.count:
+        cells = [[f"{g.start_s:.2f}", f"{g.duration_s:.2f}", g.words] for g in found.longest]
+        parts.append(
+            table(("gap from (s)", "duration (s)", "which"), cells)
+            + _not_listed(found.count, "gaps: these are the longest")
+        )
     return "\n\n".join([*parts, _troubles(run, troubles), _ages(run)])
 
 
@@ -229,9 +247,9 @@ def _troubles(run: Run, found: Sequence[quality.Trouble]) -> str:
             each.name,
             each.words,
             str(len(each.spans)),
-            f"{sum(span.duration_s for span in each.spans):.2f}",
-            f"{each.spans[0].start_s:.2f}",
-            f"{each.spans[-1].start_s:.2f}",
+            f"{each.spans.duration_s.sum():.2f}",
+            f"{each.spans.start_s[0]:.2f}",
+            f"{each.spans.start_s[-1]:.2f}",
         ]
         for each in found
     ]

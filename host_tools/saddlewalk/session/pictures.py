@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from saddlewalk.pictures.walk import BLUE, FEET, GREEN, LANES, ORANGE
 from saddlewalk.session.quality import Trouble
-from saddlewalk.session.runs import Run, Span
+from saddlewalk.session.runs import Run, Span, Spans
 from saddlewalk.session.steps import QUANTITIES, Way
 from saddlewalk.verdict import LEVELS, level_name, reason_words
 
@@ -24,6 +24,7 @@ LONG_S = 60.0  # a longer run's worst alarms are also shown closely
 WORST = 3
 AROUND_S = 3.0  # shown before and after an alarm
 CLOSELY_S = 15.0  # at most
+COLUMNS = 1500  # of pixels, roughly, across the axes
 
 Line = tuple[str, np.ndarray]  # label, a number of each tick
 
@@ -43,7 +44,7 @@ def draw(run: Run, way: Way | None, troubles: Sequence[Trouble]) -> dict[str, Pi
     for number, span in enumerate(_worst(run), start=1):
         caption = _ALARM.format(level_name(span.value), span.start_s)
         pictures[f"alarm-{number}"] = Picture(caption, _draw_scores(run, *_about(span)))
-    if way and way.steps:
+    if way and len(way.steps):
         caption = _STEPS.format("as measured" if way.measured else "as planned")
         pictures["steps"] = Picture(caption, _draw_steps(run, way))
     if troubles:
@@ -73,33 +74,43 @@ def _draw_level(run: Run) -> bytes:
     heights = (len(LANES), max(len(known), 1))
     level, reason = figure.subplots(2, 1, height_ratios=heights, sharex=True)
     for lane, (name, style) in enumerate(LANES.items()):
-        _bar(level, _spans(run, run.levels == LEVELS.index(name)), lane, style)
+        _bar(level, _spans(run, run.levels == LEVELS.index(name)), run.duration_s, lane, style)
     level.set(ylabel="level", ylim=(-0.5, len(LANES) - 0.5))
     level.set_yticks(range(len(LANES)), LANES)
     for lane, number in enumerate(known):
-        _bar(reason, _spans(run, reasons == number), lane, {"color": BLUE})
+        _bar(reason, _spans(run, reasons == number), run.duration_s, lane, {"color": BLUE})
     reason.set(ylabel="reason", ylim=(-0.5, max(len(known), 1) - 0.5))
     reason.set_yticks(range(len(known)), [reason_words(number) for number in known])
     _finish_time(figure, run)
     return _png(figure)
 
 
-def _spans(run: Run, there: np.ndarray) -> list[Span]:
-    return [span for span in run.spans(there) if span.value]
+def _spans(run: Run, there: np.ndarray) -> Spans:
+    spans = run.spans(there)
+    return spans.where(spans.value)
 
 
-def _bar(axes: Axes, spans: Sequence[Span], lane: int, style: dict) -> None:
-    extents = [(span.start_s, span.duration_s) for span in spans]
-    axes.broken_barh(extents, (lane - 0.4, 0.8), lw=0, **style)
+def _bar(axes: Axes, spans: Spans, shown_s: float, lane: int, style: dict) -> None:
+    axes.broken_barh(_extents(spans, shown_s), (lane - 0.4, 0.8), lw=0, **style)
 
 
-def _worst(run: Run) -> list[Span]:
+def _extents(spans: Spans, shown_s: float) -> list[tuple[float, float]]:
+    """(start, duration) of bars: each a pixel wide at least, and one where no pixel is between."""
+    if not len(spans):
+        return []
+    pixel_s = shown_s / COLUMNS
+    end_s = spans.start_s + np.maximum(spans.duration_s, pixel_s)
+    apart = np.flatnonzero(spans.start_s[1:] - end_s[:-1] >= pixel_s)
+    start_s = spans.start_s[np.append(0, apart + 1)]
+    return list(zip(start_s, end_s[np.append(apart, -1)] - start_s, strict=True))
+
+
+def _worst(run: Run) -> Spans | tuple[()]:
     """The alarms of a long run that matter most, in the order of their coming."""
     if run.duration_s < LONG_S:
-        return []
-    found = [span for span in run.spans(run.levels) if span.value in SHADES]
-    found.sort(key=lambda span: (span.value, span.duration_s), reverse=True)
-    return sorted(found[:WORST], key=lambda span: span.start_s)
+        return ()
+    spans = run.spans(run.levels)
+    return spans.where(np.isin(spans.value, list(SHADES))).worst(WORST)
 
 
 def _about(span: Span) -> tuple[float, float]:
@@ -112,29 +123,34 @@ def _draw_scores(run: Run, from_s: float = 0.0, to_s: float | None = None) -> by
     figure = Figure(figsize=(13, 11), dpi=110, layout="constrained")
     figure.get_layout_engine().set(w_pad=0.1)
     speed, scores, margins, energy = figure.subplots(4, 1, sharex=True)
+    shown = (from_s, to_s or run.duration_s)
     planned_m_s = np.where(
         run.column("plan", "valid") == 1, run.column("plan", "speed_m_s"), np.nan
     )
     measured_m_s = np.where(
         run.column("input", "com_age_us") >= 0, run.column("input", "com_velocity_m_s", 0), np.nan
     )
-    _lines(speed, run, [("measured", measured_m_s), ("planned", planned_m_s)], "speed (m/s)")
+    lines = [("measured", measured_m_s), ("planned", planned_m_s)]
+    _lines(speed, run, lines, shown, ylabel="speed (m/s)")
     named = (("S_pend", "s_pend"), ("S_jump", "s_jump"), ("S_SW", "s_sw"))
     lines = [(label, run.column("scores", member)) for label, member in named]
-    _lines(scores, run, lines, "stability score", SHOWN_SCORES)
+    _lines(scores, run, lines, shown, ylabel="stability score")
+    _cut_off(scores, SHOWN_SCORES)
     lines = [
         ("CoM", run.column("scores", "mos_com_m")),
         ("XCoM", run.column("scores", "mos_xcom_m")),
         ("recovery step", _recovery_m(run)),
     ]
-    _lines(margins, run, lines, "margin (m)", SHOWN_M)
+    _lines(margins, run, lines, shown, ylabel="margin (m)")
+    _cut_off(margins, SHOWN_M)
     lines = [
         ("to stop", run.column("verdict", "excess_stop_j")),
         ("to the plan", run.column("verdict", "excess_track_j")),
     ]
-    _lines(energy, run, lines, "excess energy (J)", SHOWN_J)
+    _lines(energy, run, lines, shown, ylabel="excess energy (J)")
+    _cut_off(energy, SHOWN_J)
     _finish_time(figure, run)
-    energy.set_xlim(from_s, to_s or run.duration_s)
+    energy.set_xlim(shown)
     return _png(figure)
 
 
@@ -144,30 +160,51 @@ def _recovery_m(run: Run) -> np.ndarray:
 
 
 def _lines(
-    axes: Axes,
-    run: Run,
-    lines: list[Line],
-    label: str,
-    shown: tuple[float, float] | None = None,
+    axes: Axes, run: Run, lines: list[Line], shown: tuple[float, float], ylabel: str
 ) -> None:
-    """shown: what is beyond is cut off."""
-    at_s, silent = run.time_s, np.flatnonzero(run.silent_s) + 1
+    """shown: the part of the time."""
+    ticks = slice(*np.searchsorted(run.time_s, shown))
+    at_s, silent = run.time_s[ticks], np.flatnonzero(run.silent_s[ticks][:-1]) + 1
     for (name, numbers), (colour, style) in zip(lines, STYLES, strict=False):
-        if np.isfinite(numbers).any():
-            broken = np.insert(numbers, silent, np.nan)
-            axes.plot(np.insert(at_s, silent, np.nan), broken, color=colour, ls=style, label=name)
+        if np.isfinite(numbers[ticks]).any():
+            broken = np.insert(numbers[ticks], silent, np.nan)
+            line = _thinned(np.insert(at_s, silent, at_s[silent]), broken)
+            axes.plot(*line, color=colour, ls=style, label=name)
         else:
             axes.plot([], [], color=colour, ls=style, label=f"{name}, {NO_NUMBERS}")
     axes.axhline(0, color="0.4", lw=0.8)
-    if shown:
-        low, high = axes.get_ylim()
-        axes.set_ylim(max(low, shown[0]), min(high, shown[1]))
-    for level, alpha in SHADES.items():
-        for span in _spans(run, run.levels == level):
-            end_s = span.start_s + span.duration_s
-            axes.axvspan(span.start_s, end_s, color="0.5", alpha=alpha, lw=0)
-    axes.set(ylabel=label)
+    _shade(axes, run, shown)
+    axes.set(ylabel=ylabel)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+
+
+def _shade(axes: Axes, run: Run, shown: tuple[float, float]) -> None:
+    heights = axes.get_ylim()
+    for level, alpha in SHADES.items():
+        spans = _spans(run, run.levels == level)
+        ends_s = spans.start_s + spans.duration_s
+        spans = spans.where((spans.start_s < shown[1]) & (ends_s > shown[0]))
+        extents = _extents(spans, shown[1] - shown[0])
+        bars = {"color": "0.5", "alpha": alpha, "lw": 0}
+        axes.broken_barh(extents, (0, 1), transform=axes.get_xaxis_transform(), **bars)
+    axes.set_ylim(heights)
+
+
+def _thinned(at_s: np.ndarray, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A curve with no more points than can be seen: the least and the greatest of each pixel."""
+    if len(numbers) <= 4 * COLUMNS:
+        return at_s, numbers
+    edges_s = np.linspace(at_s[0], at_s[-1], COLUMNS, endpoint=False)
+    first = np.searchsorted(at_s, edges_s)
+    empty = np.append(first[1:], len(at_s)) == first
+    both = np.column_stack([of.reduceat(numbers, first) for of in (np.fmin, np.fmax)])
+    both[empty] = np.nan
+    return np.repeat(edges_s, 2), both.ravel()
+
+
+def _cut_off(axes: Axes, most: tuple[float, float]) -> None:
+    low, high = axes.get_ylim()
+    axes.set_ylim(max(low, most[0]), min(high, most[1]))
 
 
 def _draw_steps(run: Run, way: Way) -> bytes:
@@ -176,10 +213,9 @@ def _draw_steps(run: Run, way: Way) -> bytes:
         figure.subplots(len(QUANTITIES), 1, sharex=True), QUANTITIES.items(), strict=True
     ):
         for side, (name, colour) in enumerate(FEET):
-            steps = [step for step in way.steps if step.side == side]
-            at_s = [step.landed_s for step in steps]
-            values = [getattr(step, member) for step in steps]
-            axes.plot(at_s, values, "<>"[side], color=colour, ls=":", lw=0.8, label=name)
+            steps = way.steps.side == side
+            line = _thinned(way.steps.landed_s[steps], getattr(way.steps, member)[steps])
+            axes.plot(*line, "<>"[side], color=colour, ls=":", lw=0.8, label=name)
         axes.set(ylabel=label)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     _finish_time(figure, run)
@@ -190,7 +226,7 @@ def _draw_troubles(run: Run, troubles: Sequence[Trouble]) -> bytes:
     figure = Figure(figsize=(13, 1 + 0.3 * len(troubles)), dpi=110, layout="constrained")
     axes = figure.subplots()
     for lane, trouble in enumerate(troubles):
-        _bar(axes, trouble.spans, lane, {"color": BLUE})
+        _bar(axes, trouble.spans, run.duration_s, lane, {"color": BLUE})
     axes.set_ylim(-0.5, len(troubles) - 0.5)
     axes.set_yticks(range(len(troubles)), [trouble.name for trouble in troubles])
     _finish_time(figure, run)

@@ -7,7 +7,7 @@ import numpy as np
 
 from saddlewalk import process_words
 from saddlewalk.dashboard import FAULTS, LIMITS, STATUSES
-from saddlewalk.session.runs import Run, Span
+from saddlewalk.session.runs import Run, Spans
 from saddlewalk.ticks import TICK_S
 
 GAP_S = 1.5 * TICK_S
@@ -59,7 +59,7 @@ class Trouble:
 
     name: str
     words: str
-    spans: list[Span]
+    spans: Spans
 
 
 @dataclass(frozen=True)
@@ -78,6 +78,13 @@ class Gap:
     start_s: float
     duration_s: float
     words: str
+
+
+@dataclass(frozen=True)
+class Gaps:
+    count: int
+    duration_s: float  # of all
+    longest: list[Gap]  # in the order of their coming
 
 
 def missing(run: Run) -> list[str]:
@@ -102,18 +109,24 @@ def troubles(run: Run) -> list[Trouble]:
     return found
 
 
-def gaps(run: Run) -> list[Gap]:
+def gaps(run: Run, most: int) -> Gaps:
     """Where ticks are missing, and whether the log or the firmware left them out."""
-    found = []
-    for index in np.flatnonzero(np.diff(run.time_s) > GAP_S):
-        before, after = run.ticks[index].number, run.ticks[index + 1].number
-        words = "no message tells why"
-        if before is not None and after is not None:
-            lost = after - before - 1
-            words = f"{lost} ticks are not in the log" if lost else "the firmware left ticks out"
-        start_s = float(run.time_s[index]) + TICK_S
-        found.append(Gap(start_s, float(run.time_s[index + 1]) - start_s, words))
-    return found
+    after_s = np.diff(run.time_s)
+    found = np.flatnonzero(after_s > GAP_S)
+    duration_s = after_s[found] - TICK_S
+    longest = np.sort(found[np.argsort(-duration_s, kind="stable")[:most]])
+    return Gaps(len(found), float(duration_s.sum()), [_gap(run, index) for index in longest])
+
+
+def _gap(run: Run, index: int) -> Gap:
+    """Behind a tick."""
+    before, after = run.number(index), run.number(index + 1)
+    words = "no message tells why"
+    if before is not None and after is not None:
+        lost = after - before - 1
+        words = f"{lost} ticks are not in the log" if lost else "the firmware left ticks out"
+    start_s = float(run.time_s[index]) + TICK_S
+    return Gap(start_s, float(run.time_s[index + 1]) - start_s, words)
 
 
 def ages(run: Run) -> list[Age]:
@@ -159,7 +172,8 @@ def _bits(run: Run, member: str, names: Sequence[str], words: dict[str, str]) ->
 
 
 def _trouble(run: Run, name: str, words: str, there: np.ndarray) -> Trouble:
-    return Trouble(name, words, [span for span in run.spans(there) if span.value])
+    spans = run.spans(there)
+    return Trouble(name, words, spans.where(spans.value))
 
 
 def _age(run: Run, part: str, what: str) -> Age:

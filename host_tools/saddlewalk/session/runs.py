@@ -1,10 +1,13 @@
-"""The runs that an LCM log holds, tick by tick, as columns of numbers."""
+"""The runs that an LCM log holds, tick by tick, as columns of the numbers that a page needs.
 
-from collections import Counter
+A day of walking is a million ticks, so of each only these numbers are kept, in LCM's own widths:
+some 150 bytes of the 1500 or so that are logged.
+"""
+
+from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -12,27 +15,34 @@ import numpy as np
 
 from saddlewalk.dashboard import SILENT_AFTER_S
 from saddlewalk.errors import UserError
-from saddlewalk.logs.messages import CHANNEL_PREFIX, Event, decode, load_lcm_log
+from saddlewalk.logs.messages import Kind, Others, kinds
 from saddlewalk.ticks import TICK_S
+from saddlewalk.transport.lcm_log import LcmLog
 from saddlewalk.verdict import reason_words
 
 FIRMWARE = tuple("config input plan scores verdict bos health status".split())
 NUMBERED = ("health", "status", "input")  # messages that tell their tick's number
+NO_NUMBER = -(2**63)
 RUNS_MAX = 20  # more are two firmware processes that were logged at once
+BLOCK = 4096  # messages of a channel that are held as they came
 
-
-@dataclass
-class Tick:
-    """What the firmware published at one time."""
-
-    utime_us: int
-    messages: dict[str, Any]  # by the name of their channel, as `plan`
-
-    @property
-    def number(self) -> int | None:
-        """From 0 at the start of the firmware; None if no message tells."""
-        told = (self.messages[name].tick for name in NUMBERED if name in self.messages)
-        return next(told, None)
+# Columns that can be asked for: members, or with an index elements, of each channel.
+KEPT: dict[str, tuple] = {
+    "input": (
+        *("command_age_us", "com_age_us", "left_age_us", "right_age_us"),
+        *(("com_velocity_m_s", 0), ("left_m", 0), ("left_m", 1), ("right_m", 0), ("right_m", 1)),
+        *("left_contact", "right_contact"),
+    ),
+    "plan": (
+        *("valid", "mode", "support", "step_count", "origin_x_m", "speed_m_s"),
+        *(("com_m", 0), ("left_m", 1), ("right_m", 1), "time_to_toe_off_s"),
+    ),
+    "scores": ("s_pend", "s_jump", "s_sw", "mos_com_m", "mos_xcom_m"),
+    "verdict": (
+        *("level", "reason", "compared", "excess_stop_j", "excess_track_j", "recovery_margin_m"),
+    ),
+    "health": ("status", "limits", "faults"),
+}
 
 
 @dataclass(frozen=True)
@@ -46,14 +56,96 @@ class Span:
 
 
 @dataclass(frozen=True)
+class Spans:
+    """Spans in the order of their coming, as columns."""
+
+    value: np.ndarray
+    first: np.ndarray  # tick
+    end: np.ndarray  # the tick after the last
+    start_s: np.ndarray
+    duration_s: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.value)
+
+    def __iter__(self) -> Iterator[Span]:
+        columns = (self.value, self.first, self.end, self.start_s, self.duration_s)
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        for value, first, end, start_s, duration_s in rows:
+            yield Span(value, slice(first, end), start_s, duration_s)
+
+    def where(self, chosen: np.ndarray) -> "Spans":
+        """Those of a mask or of indices."""
+        return Spans(
+            self.value[chosen],
+            self.first[chosen],
+            self.end[chosen],
+            self.start_s[chosen],
+            self.duration_s[chosen],
+        )
+
+    def worst(self, most: int) -> "Spans":
+        """Up to that many of the largest values, and of these the longest; still in order."""
+        order = np.lexsort((-self.duration_s, -self.value))
+        return self.where(np.sort(order[:most]))
+
+
+class Channel:
+    """The messages of one channel in a run."""
+
+    def __init__(self, kind: Kind) -> None:
+        self.kind = kind
+        self.last = b""  # message
+        self._ticks = array("I")
+        self._columns = {key: bytearray() for key in KEPT.get(kind.name, ())}
+        self._block: list[bytes] = []
+
+    def add(self, tick: int, data: bytes) -> None:
+        self._ticks.append(tick)
+        self.last = data
+        if self._columns:
+            self._block.append(data)
+            if len(self._block) == BLOCK:
+                self._keep()
+
+    def column(self, key: str | tuple[str, int], ticks: int, missing: float) -> np.ndarray:
+        """A number of each of the run's ticks, `missing` where no message came."""
+        self._keep()
+        kept = np.frombuffer(self._columns[key], self._type(key))
+        numbers = np.full(ticks, missing)
+        numbers[np.frombuffer(self._ticks, np.uint32)] = kept
+        return numbers
+
+    def _keep(self) -> None:
+        """Of the messages held as they came, what is needed."""
+        messages = np.frombuffer(b"".join(self._block), self.kind.layout)
+        self._block = []
+        for key, column in self._columns.items():
+            member, *element = (key,) if isinstance(key, str) else key
+            numbers = messages[member][(slice(None), *element)]
+            column += numbers.astype(self._type(key)).tobytes()
+
+    def _type(self, key: str | tuple[str, int]) -> np.dtype:
+        member = key if isinstance(key, str) else key[0]
+        return self.kind.layout[member].base.newbyteorder("=")
+
+
+@dataclass(frozen=True)
 class Run:
     """One run of the firmware, at least one tick. Times are since its first tick in the log."""
 
-    ticks: list[Tick]
+    utime_us: array  # of each tick
+    numbers: array  # ticks', from 0 at the start of the firmware; NO_NUMBER: no message tells
+    channels: dict[str, Channel]  # by name, as `plan`
+
+    @property
+    def ticks(self) -> int:
+        return len(self.utime_us)
 
     @cached_property
     def time_s(self) -> np.ndarray:
-        return np.array([(tick.utime_us - self.ticks[0].utime_us) / 1e6 for tick in self.ticks])
+        utime_us = np.frombuffer(self.utime_us, np.uint64)  # whose differences do not overflow
+        return (utime_us - utime_us[0]) / 1e6
 
     @cached_property
     def silent_s(self) -> np.ndarray:
@@ -70,47 +162,58 @@ class Run:
     def duration_s(self) -> float:
         return float(self.time_s[-1]) + TICK_S
 
+    def number(self, tick: int) -> int | None:
+        """From 0 at the start of the firmware; None if no message tells."""
+        number = self.numbers[tick]
+        return None if number == NO_NUMBER else number
+
     def has(self, name: str) -> bool:
-        return any(name in tick.messages for tick in self.ticks)
+        return name in self.channels
 
     def last(self, name: str) -> Any:
         """The last message of a channel, or None."""
-        told = (tick.messages[name] for tick in reversed(self.ticks) if name in tick.messages)
-        return next(told, None)
+        channel = self.channels.get(name)
+        return channel.kind.decode(channel.last) if channel else None
 
     def column(self, name: str, member: str, element: int | None = None) -> np.ndarray:
-        """A number of each tick; NaN where it is not known."""
-        numbers = np.array(
-            [_number(tick.messages.get(name), member, element) for tick in self.ticks]
-        )
-        return np.where(np.isfinite(numbers), numbers, np.nan)
+        """A number of each tick, one of KEPT; NaN where it is not known."""
+        if name not in self.channels:
+            return np.full(self.ticks, np.nan)
+        key = member if element is None else (member, element)
+        numbers = self.channels[name].column(key, self.ticks, np.nan)
+        numbers[np.isinf(numbers)] = np.nan
+        return numbers
 
     def bits(self, name: str, member: str) -> np.ndarray:
         """A message's bits of each tick; 0 where it did not come."""
-        return np.array(
-            [getattr(tick.messages.get(name), member, 0) for tick in self.ticks], dtype=np.int64
-        )
+        if name not in self.channels:
+            return np.zeros(self.ticks, np.int64)
+        return self.channels[name].column(member, self.ticks, 0).astype(np.int64)
 
-    def spans(self, values: np.ndarray) -> list[Span]:
+    def spans(self, values: np.ndarray) -> Spans:
         """Of one value a tick; silence ends a span."""
-        silences = np.cumsum(np.append(0, self.silent_s[:-1] > 0))
-        spans, first = [], 0
-        for (value, _), group in groupby(zip(values.tolist(), silences, strict=True)):
-            ticks = slice(first, first + len(list(group)))
-            held_s = float(self.hold_s[ticks].sum())
-            spans.append(Span(value, ticks, float(self.time_s[first]), held_s))
-            first = ticks.stop
-        return spans
+        ends = (values[1:] != values[:-1]) | (self.silent_s[:-1] > 0)
+        first = np.append(0, np.flatnonzero(ends) + 1)
+        held_s = np.add.reduceat(self.hold_s, first)
+        return Spans(
+            values[first], first, np.append(first[1:], self.ticks), self.time_s[first], held_s
+        )
 
     @cached_property
     def levels(self) -> np.ndarray:
         """The level announced, as verdict.LEVELS; -1: no verdict came."""
-        return np.nan_to_num(self.column("verdict", "level"), nan=-1).astype(int)
+        return np.nan_to_num(self.column("verdict", "level"), nan=-1).astype(np.int8)
 
     def reasons(self, ticks: slice) -> list[str]:
         """In words, in the order of their coming."""
-        told = (t.messages["verdict"].reason for t in self.ticks[ticks] if "verdict" in t.messages)
-        return [words for words in map(reason_words, dict.fromkeys(told)) if words]
+        told = self._reasons[ticks]
+        numbers, first = np.unique(told[told >= 0], return_index=True)
+        words = (reason_words(int(number)) for number in numbers[np.argsort(first)])
+        return [each for each in words if each]
+
+    @cached_property
+    def _reasons(self) -> np.ndarray:
+        return np.nan_to_num(self.column("verdict", "reason"), nan=-1).astype(np.int16)
 
 
 @dataclass(frozen=True)
@@ -120,76 +223,91 @@ class Session:
     runs: list[Run]
     logged_us: tuple[int, int]  # first and last event, since 1970
     events: int
-    unreadable: Counter[str]  # channel -> messages of no type that this version has
-    truth: list[Any]  # truth_t of an emulated wearer
-    broken: str  # why the log could not be read to its end
+    unreadable: Others  # messages of no type that this version has
+    fell: bool | None  # the emulated wearer; None: there was none
+    broken: str  # what could not be read of the log
 
 
 def load_session(path: Path) -> Session:
     """Raises UserError for a file that is no LCM log, or holds nothing of the firmware's."""
-    log = load_lcm_log(path)
-    unreadable: Counter[str] = Counter()
-    truth: list[Any] = []
-    runs = list(_runs(_ticks(_told(log.records, unreadable, truth))))
-    if not runs:
+    log = LcmLog(path)
+    gathered = _Gathered()
+    first_us = last_us = None
+    for event in log:
+        last_us = event.logged_us
+        first_us = last_us if first_us is None else first_us
+        gathered.take(event.channel, event.data)
+        if len(gathered.runs) > RUNS_MAX:
+            raise UserError(
+                f"{path}: more than {RUNS_MAX} runs, as when two firmware processes are logged at "
+                f"once: give a log of up to {RUNS_MAX}"
+            )
+    gathered.end_tick()
+    unreadable = gathered.unreadable
+    if not gathered.runs:
         others = f", on {', '.join(map(repr, sorted(unreadable)[:5]))}," if unreadable else ""
         raise UserError(
-            f"{path}: none of its {len(log.records)} messages{others} is one that "
+            f"{path}: none of its {log.events} messages{others} is one that "
             "this version's firmware sends: give a log of SADDLEWALK_ channels"
         )
-    if len(runs) > RUNS_MAX:
-        raise UserError(
-            f"{path}: {len(runs)} runs, as when two firmware processes are logged at once: give a "
-            f"log of up to {RUNS_MAX}"
-        )
-    logged_us = log.records[0].logged_us, log.records[-1].logged_us
-    return Session(runs, logged_us, len(log.records), unreadable, truth, log.broken)
+    return Session(
+        gathered.runs, (first_us, last_us), log.events, unreadable, gathered.fell, log.broken
+    )
 
 
-def _told(
-    events: list[Event], unreadable: Counter[str], truth: list[Any]
-) -> Iterator[tuple[str, Any]]:
-    """(name, message) of what the firmware says; the rest is counted or set apart."""
-    for event in events:
-        name, message = event.channel.removeprefix(CHANNEL_PREFIX).lower(), decode(event)
-        if message is None:
-            unreadable[event.channel] += 1
-        elif name in FIRMWARE:
-            yield name, message
-        elif name == "truth":
-            truth.append(message)
+class _Gathered:
+    """The runs of the messages so far.
+
+    Messages of one time, none twice, are one tick; a config_t alone is none. A run ends where time
+    or the ticks' number goes back.
+    """
+
+    def __init__(self) -> None:
+        self.runs: list[Run] = []
+        self.unreadable = Others()
+        self.fell: bool | None = None
+        self._utime_us = 0
+        self._tick: dict[str, bytes] = {}  # the messages of the tick at hand, by name
+        self._number = -1  # the last in the run
+
+    def take(self, channel: str, data: bytes) -> None:
+        kind = kinds().get(channel)
+        if kind is None or not _is_message(kind, data):
+            self.unreadable.add(channel)
+        elif kind.name in FIRMWARE:
+            utime_us = _integer(data, 8, 8)
+            if utime_us != self._utime_us or kind.name in self._tick:
+                self.end_tick()
+                self._utime_us = utime_us
+            self._tick[kind.name] = data
+        elif kind.name == "truth":
+            self.fell = bool(self.fell or kind.decode(data).fallen)
+
+    def end_tick(self) -> None:
+        """What came so far of a tick is all of it."""
+        tick, self._tick = self._tick, {}
+        if not tick.keys() - {"config"}:
+            return
+        number = next((_integer(tick[name], 16, 4) for name in NUMBERED if name in tick), None)
+        run = self.runs[-1] if self.runs else None
+        again = number is not None and number <= self._number
+        if run is None or again or self._utime_us <= run.utime_us[-1]:
+            run = Run(array("q"), array("q"), {})
+            self.runs.append(run)
+            self._number = -1
+        self._number = self._number if number is None else number
+        for name, data in tick.items():
+            if name not in run.channels:
+                run.channels[name] = Channel(kinds()[f"SADDLEWALK_{name.upper()}"])
+            run.channels[name].add(run.ticks, data)
+        run.utime_us.append(self._utime_us)
+        run.numbers.append(NO_NUMBER if number is None else number)
 
 
-def _ticks(told: Iterator[tuple[str, Any]]) -> Iterator[Tick]:
-    """Messages of one time, none twice, are one tick; a config_t alone is none."""
-    tick = Tick(0, {})
-    for name, message in told:
-        if message.utime_us != tick.utime_us or name in tick.messages:
-            if tick.messages.keys() - {"config"}:
-                yield tick
-            tick = Tick(message.utime_us, {})
-        tick.messages[name] = message
-    if tick.messages.keys() - {"config"}:
-        yield tick
+def _is_message(kind: Kind, data: bytes) -> bool:
+    return kind.is_whole(data) if kind.layout is not None else kind.decode(data) is not None
 
 
-def _runs(ticks: Iterator[Tick]) -> Iterator[Run]:
-    """A run ends where time or the ticks' number goes back."""
-    run: list[Tick] = []
-    number = -1
-    for tick in ticks:
-        again = tick.number is not None and tick.number <= number
-        if run and (again or tick.utime_us <= run[-1].utime_us):
-            yield Run(run)
-            run, number = [], -1
-        run.append(tick)
-        number = number if tick.number is None else tick.number
-    if run:
-        yield Run(run)
-
-
-def _number(message: Any, member: str, element: int | None) -> float:
-    if message is None:
-        return np.nan
-    value = getattr(message, member)
-    return float(value if element is None else value[element])
+def _integer(data: bytes, at: int, size: int) -> int:
+    """utime_us is the first member of our messages, and of those of NUMBERED tick the second."""
+    return int.from_bytes(data[at : at + size], "big", signed=True)

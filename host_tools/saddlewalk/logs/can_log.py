@@ -1,0 +1,172 @@
+"""CAN logs, frame by frame as python-can reads them, with bounds on what a file can make it do."""
+
+import logging
+import struct
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, Any
+
+import can
+
+from saddlewalk.errors import UserError
+
+# Not python-can's .db: a database may hold a program in the place of a table.
+SUFFIXES = (".log", ".blf", ".asc", ".trc", ".csv")
+LINE_MAX = 4096  # characters
+IDENTIFIERS = 1 << 29
+FRAME_MAX = 64  # bytes of data, of CAN FD
+CONTAINER_MAX = 16 << 20  # bytes of BLF, packed and unpacked; writers take 128 KiB
+OBJECT_MAX = 1 << 18  # bytes within a container; a frame has some 100
+_BLF_OBJECT = struct.Struct("<4sHHLL")  # also the start of a container
+_BLF_CONTAINER = struct.Struct("<H14x")
+_CONTAINER, _DEFLATED = 10, 2
+
+
+class CanLog:
+    """The frames of a CAN log, in order, of the format that its suffix names."""
+
+    def __init__(self, path: Path) -> None:
+        """Raises UserError for a file that is no CAN log, or holds no frame."""
+        self.path = path
+        self.frames = 0  # read so far
+        self.broken = ""  # in words, what could not be read of it; empty: nothing
+        if next(iter(self), None) is None:
+            raise UserError(f"{path} holds no CAN frame{self.broken and f': {self.broken}'}")
+
+    def __iter__(self) -> Iterator[can.Message]:
+        remarks = _Remarks()
+        reader = self._open()
+        logger = logging.getLogger("can")
+        logger.addHandler(remarks)
+        propagated, logger.propagate = logger.propagate, False
+        self.frames, self.broken = 0, ""
+        try:
+            with reader:
+                yield from self._read(reader)
+        finally:
+            logger.removeHandler(remarks)
+            logger.propagate = propagated
+        if remarks.count and not self.broken:
+            self.broken = f"{remarks.count} entries cannot be read; the first: {remarks.first}"
+
+    def _read(self, reader: Any) -> Iterator[can.Message]:
+        frames = iter(reader)
+        while True:
+            try:
+                frame = _checked(next(frames))
+            except StopIteration:
+                return
+            except Exception as error:  # whatever a reader makes of bytes that are no log
+                self.broken = f"it cannot be read on after {self.frames} records: {_words(error)}"
+                return
+            self.frames += 1
+            yield frame
+
+    def _open(self) -> Any:
+        suffix = self.path.suffix.lower()
+        try:
+            if suffix not in SUFFIXES:
+                raise ValueError(f"{suffix or 'no suffix'} is none of these")
+            if suffix == ".blf":
+                return _Blf(self.path)
+            reader = can.LogReader(self.path)
+        except OSError as error:
+            raise UserError(f"{self.path}: {error.strerror}") from error
+        except Exception as error:  # each format's reader has errors of its own
+            raise UserError(
+                f"{self.path} is neither an LCM log nor a CAN log that can be read "
+                f"({', '.join(SUFFIXES)}): {_words(error)}"
+            ) from error
+        reader.file = _Lines(reader.file)
+        return reader
+
+
+class _Remarks(logging.Handler):
+    """Counts python-can's warnings, of which each is an entry that it passed over."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.count, self.first = 0, ""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.count += 1
+        self.first = self.first or record.getMessage()
+
+
+class _Lines:
+    """A text file by lines, of which none is too long to hold."""
+
+    def __init__(self, file: IO[str]) -> None:
+        self._file = file
+
+    def __iter__(self) -> "_Lines":
+        return self
+
+    def __next__(self) -> str:
+        line = self._file.readline(LINE_MAX)
+        if not line:
+            raise StopIteration
+        if len(line) == LINE_MAX and not line.endswith("\n"):
+            raise ValueError(f"a line is longer than {LINE_MAX} characters")
+        return line
+
+    def close(self) -> None:
+        self._file.close()
+
+
+def _checked(frame: can.Message) -> can.Message:
+    """A frame that CAN can carry; python-can checks none that it reads."""
+    if not 0 <= frame.arbitration_id < IDENTIFIERS:
+        raise ValueError(f"a frame has identifier {frame.arbitration_id:#x}")
+    if len(frame.data) > FRAME_MAX:
+        raise ValueError(f"a frame has {len(frame.data)} bytes of data")
+    return frame
+
+
+class _Blf(can.BLFReader):
+    """python-can's reader, which follows sizes without end or bound, with these checked first."""
+
+    def __iter__(self) -> Iterator[can.Message]:
+        while header := self.file.read(_BLF_OBJECT.size):
+            signature, _, _, size, kind = _BLF_OBJECT.unpack(header)
+            if signature != b"LOBJ":
+                raise ValueError("an object does not begin as one")
+            _check_size(size, CONTAINER_MAX)
+            body = self.file.read(size - _BLF_OBJECT.size)
+            self.file.read(size % 4)
+            if kind == _CONTAINER:
+                data = _unpacked(body)
+                _check_objects(self._tail + data)
+                yield from self._parse_container(data)
+            if len(body) + _BLF_OBJECT.size < size:
+                raise ValueError("the log ends within an object")
+
+
+def _check_size(size: int, most: int) -> None:
+    if not _BLF_OBJECT.size <= size <= most:
+        raise ValueError(f"an object has {size} bytes")
+
+
+def _unpacked(body: bytes) -> bytes:
+    (method,) = _BLF_CONTAINER.unpack_from(body)
+    data = body[_BLF_CONTAINER.size :]
+    if method != _DEFLATED:
+        return data
+    inflating = zlib.decompressobj()
+    data = inflating.decompress(data, CONTAINER_MAX)
+    if inflating.unconsumed_tail:
+        raise ValueError(f"a container has more than {CONTAINER_MAX} bytes")
+    return data
+
+
+def _check_objects(data: bytes) -> None:
+    at = 0
+    while (at := data.find(b"LOBJ", at, at + 8)) >= 0 and at + _BLF_OBJECT.size <= len(data):
+        size = _BLF_OBJECT.unpack_from(data, at)[3]
+        _check_size(size, OBJECT_MAX)
+        at += size
+
+
+def _words(error: Exception) -> str:
+    return str(error) or type(error).__name__
