@@ -215,7 +215,7 @@ def _variabilities(group: str, steps: Steps, chosen: np.ndarray) -> Iterator[lis
 
 
 def _quality(run: Run, troubles: Sequence[quality.Trouble]) -> str:
-    numbers = np.frombuffer(run.numbers, np.int64)
+    numbers = np.frombuffer(run.numbers, np.int32)
     numbers = numbers[numbers != NO_NUMBER]
     told = f"numbers {numbers[0]} to {numbers[-1]}" if len(numbers) else "without numbers"
     found = quality.gaps(run, LISTED)

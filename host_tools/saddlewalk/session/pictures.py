@@ -1,7 +1,7 @@
 """The pictures of a run: level and reasons, speed, scores, margins and energies, steps."""
 
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -124,43 +124,46 @@ def _draw_scores(run: Run, from_s: float = 0.0, to_s: float | None = None) -> by
     figure.get_layout_engine().set(w_pad=0.1)
     speed, scores, margins, energy = figure.subplots(4, 1, sharex=True)
     shown = (from_s, to_s or run.duration_s)
-    planned_m_s = np.where(
-        run.column("plan", "valid") == 1, run.column("plan", "speed_m_s"), np.nan
-    )
-    measured_m_s = np.where(
-        run.column("input", "com_age_us") >= 0, run.column("input", "com_velocity_m_s", 0), np.nan
-    )
-    lines = [("measured", measured_m_s), ("planned", planned_m_s)]
-    _lines(speed, run, lines, shown, ylabel="speed (m/s)")
-    named = (("S_pend", "s_pend"), ("S_jump", "s_jump"), ("S_SW", "s_sw"))
-    lines = [(label, run.column("scores", member)) for label, member in named]
-    _lines(scores, run, lines, shown, ylabel="stability score")
+    _lines(speed, run, _speeds(run), shown, ylabel="speed (m/s)")
+    _lines(scores, run, _columns(run, "scores", _SHOWN_SCORES), shown, ylabel="stability score")
     _cut_off(scores, SHOWN_SCORES)
-    lines = [
-        ("CoM", run.column("scores", "mos_com_m")),
-        ("XCoM", run.column("scores", "mos_xcom_m")),
-        ("recovery step", _recovery_m(run)),
-    ]
-    _lines(margins, run, lines, shown, ylabel="margin (m)")
+    _lines(margins, run, _margins(run), shown, ylabel="margin (m)")
     _cut_off(margins, SHOWN_M)
-    lines = [
-        ("to stop", run.column("verdict", "excess_stop_j")),
-        ("to the plan", run.column("verdict", "excess_track_j")),
-    ]
-    _lines(energy, run, lines, shown, ylabel="excess energy (J)")
+    energies = _columns(run, "verdict", _SHOWN_ENERGIES)
+    _lines(energy, run, energies, shown, ylabel="excess energy (J)")
     _cut_off(energy, SHOWN_J)
     _finish_time(figure, run)
     energy.set_xlim(shown)
     return _png(figure)
 
 
-def _recovery_m(run: Run) -> np.ndarray:
+_SHOWN_SCORES = {"S_pend": "s_pend", "S_jump": "s_jump", "S_SW": "s_sw"}
+_SHOWN_MARGINS = {"CoM": "mos_com_m", "XCoM": "mos_xcom_m"}
+_SHOWN_ENERGIES = {"to stop": "excess_stop_j", "to the plan": "excess_track_j"}
+
+
+def _columns(run: Run, channel: str, members: dict[str, str]) -> Iterator[Line]:
+    """One after another, since each is long."""
+    for label, member in members.items():
+        yield label, run.column(channel, member)
+
+
+def _speeds(run: Run) -> Iterator[Line]:
+    known = run.column("input", "com_age_us") >= 0
+    yield "measured", np.where(known, run.column("input", "com_velocity_m_s", 0), np.nan)
+    valid = run.column("plan", "valid") == 1
+    yield "planned", np.where(valid, run.column("plan", "speed_m_s"), np.nan)
+
+
+def _margins(run: Run) -> Iterator[Line]:
+    yield from _columns(run, "scores", _SHOWN_MARGINS)
     compared = run.column("verdict", "compared") == 1
-    return np.where(compared, run.column("verdict", "recovery_margin_m"), np.nan)
+    margin_m = np.where(compared, run.column("verdict", "recovery_margin_m"), np.nan)
+    yield "recovery step", margin_m
 
 
 def _lines(
-    axes: Axes, run: Run, lines: list[Line], shown: tuple[float, float], ylabel: str
+    axes: Axes, run: Run, lines: Iterable[Line], shown: tuple[float, float], ylabel: str
 ) -> None:
     """shown: the part of the time."""
     ticks = slice(*np.searchsorted(run.time_s, shown))

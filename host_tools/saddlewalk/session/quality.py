@@ -177,10 +177,10 @@ def _trouble(run: Run, name: str, words: str, there: np.ndarray) -> Trouble:
 
 
 def _age(run: Run, part: str, what: str) -> Age:
-    age_us = run.column("input", f"{part}_age_us")
+    age_us = run.logged("input", f"{part}_age_us")
     told = age_us[age_us >= 0]
     never = int((age_us < 0).sum())
     if not len(told):
         return Age(what, np.nan, np.nan, np.nan, never)
-    median, usual, oldest = np.percentile(told, (50, 95, 100)) / 1000
+    median, usual, oldest = np.percentile(told, (50, 95, 100), overwrite_input=True) / 1000
     return Age(what, float(median), float(usual), float(oldest), never)

@@ -1,7 +1,7 @@
 """The runs that an LCM log holds, tick by tick, as columns of the numbers that a page needs.
 
-A day of walking is a million ticks, so of each only these numbers are kept, in LCM's own widths:
-some 150 bytes of the 1500 or so that are logged.
+A day of walking is a million ticks, so of each only these numbers are kept, none wider than
+needed: some 120 bytes of the 1500 or so that are logged.
 """
 
 from array import array
@@ -22,7 +22,7 @@ from saddlewalk.verdict import reason_words
 
 FIRMWARE = tuple("config input plan scores verdict bos health status".split())
 NUMBERED = ("health", "status", "input")  # messages that tell their tick's number
-NO_NUMBER = -(2**63)
+NO_NUMBER = -(2**31)
 RUNS_MAX = 20  # more are two firmware processes that were logged at once
 BLOCK = 4096  # messages of a channel that are held as they came
 
@@ -96,25 +96,31 @@ class Channel:
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
         self.last = b""  # message
-        self._ticks = array("I")
+        self._ticks = 0  # of the run, up to the last message
+        self._without = array("I")  # of these, the ticks in which none came
         self._columns = {key: bytearray() for key in KEPT.get(kind.name, ())}
         self._block: list[bytes] = []
 
     def add(self, tick: int, data: bytes) -> None:
-        self._ticks.append(tick)
+        self._without.extend(range(self._ticks, tick))
+        self._ticks = tick + 1
         self.last = data
         if self._columns:
             self._block.append(data)
             if len(self._block) == BLOCK:
                 self._keep()
 
-    def column(self, key: str | tuple[str, int], ticks: int, missing: float) -> np.ndarray:
-        """A number of each of the run's ticks, `missing` where no message came."""
+    def kept(self, key: str | tuple[str, int]) -> np.ndarray:
+        """A number of each message."""
         self._keep()
-        kept = np.frombuffer(self._columns[key], self._type(key))
-        numbers = np.full(ticks, missing)
-        numbers[np.frombuffer(self._ticks, np.uint32)] = kept
-        return numbers
+        return np.frombuffer(self._columns[key], self._type(key))
+
+    def there(self, ticks: int) -> np.ndarray:
+        """In which of the run's ticks a message came."""
+        there = np.zeros(ticks, bool)
+        there[: self._ticks] = True
+        there[np.frombuffer(self._without, np.uint32)] = False
+        return there
 
     def _keep(self) -> None:
         """Of the messages held as they came, what is needed."""
@@ -126,8 +132,10 @@ class Channel:
             column += numbers.astype(self._type(key)).tobytes()
 
     def _type(self, key: str | tuple[str, int]) -> np.dtype:
+        """LCM's, but for ages in microseconds, which are shown in milliseconds."""
         member = key if isinstance(key, str) else key[0]
-        return self.kind.layout[member].base.newbyteorder("=")
+        logged = self.kind.layout[member].base.newbyteorder("=")
+        return np.dtype(np.float32) if logged == np.int64 else logged
 
 
 @dataclass(frozen=True)
@@ -154,6 +162,11 @@ class Run:
         return np.append(np.where(after_s > SILENT_AFTER_S, after_s - TICK_S, 0.0), 0.0)
 
     @cached_property
+    def after_silence(self) -> np.ndarray:
+        """Ticks before which nothing came for too long."""
+        return np.append(False, self.silent_s[:-1] > 0)
+
+    @cached_property
     def hold_s(self) -> np.ndarray:
         """For how long each tick's messages hold: to the next tick, or one period."""
         return np.diff(self.time_s, append=self.time_s[-1] + TICK_S) - self.silent_s
@@ -178,21 +191,28 @@ class Run:
     def column(self, name: str, member: str, element: int | None = None) -> np.ndarray:
         """A number of each tick, one of KEPT; NaN where it is not known."""
         if name not in self.channels:
-            return np.full(self.ticks, np.nan)
-        key = member if element is None else (member, element)
-        numbers = self.channels[name].column(key, self.ticks, np.nan)
+            return np.full(self.ticks, np.nan, np.float32)
+        kept = self.channels[name].kept(member if element is None else (member, element))
+        exact = kept.dtype == np.float32 or kept.dtype.itemsize < 4
+        numbers = np.full(self.ticks, np.nan, np.float32 if exact else np.float64)
+        numbers[self.channels[name].there(self.ticks)] = kept
         numbers[np.isinf(numbers)] = np.nan
         return numbers
 
     def bits(self, name: str, member: str) -> np.ndarray:
         """A message's bits of each tick; 0 where it did not come."""
-        if name not in self.channels:
-            return np.zeros(self.ticks, np.int64)
-        return self.channels[name].column(member, self.ticks, 0).astype(np.int64)
+        bits = np.zeros(self.ticks, np.int32)
+        if name in self.channels:
+            bits[self.channels[name].there(self.ticks)] = self.channels[name].kept(member)
+        return bits
+
+    def logged(self, name: str, member: str) -> np.ndarray:
+        """A number of each message that came."""
+        return self.channels[name].kept(member)
 
     def spans(self, values: np.ndarray) -> Spans:
         """Of one value a tick; silence ends a span."""
-        ends = (values[1:] != values[:-1]) | (self.silent_s[:-1] > 0)
+        ends = (values[1:] != values[:-1]) | self.after_silence[1:]
         first = np.append(0, np.flatnonzero(ends) + 1)
         held_s = np.add.reduceat(self.hold_s, first)
         return Spans(
@@ -292,7 +312,7 @@ class _Gathered:
         run = self.runs[-1] if self.runs else None
         again = number is not None and number <= self._number
         if run is None or again or self._utime_us <= run.utime_us[-1]:
-            run = Run(array("q"), array("q"), {})
+            run = Run(array("q"), array("i"), {})
             self.runs.append(run)
             self._number = -1
         self._number = self._number if number is None else number

@@ -88,16 +88,22 @@ def _known(run: Run, part: str) -> np.ndarray:
 
 
 def _measured(run: Run) -> Way:
-    velocity_m_s = np.where(_known(run, "com"), run.column("input", "com_velocity_m_s", 0), np.nan)
-    means_m_s = (velocity_m_s[1:] + velocity_m_s[:-1]) / 2
-    moved_m = np.append(0.0, means_m_s * np.diff(run.time_s))
-    moved_m[np.append(0.0, run.silent_s[:-1]) > 0] = np.nan
     strikes = [_strikes(run, side) for side in SIDES]
     ticks, chosen = np.unique(np.concatenate(strikes), return_index=True)  # both at once: left
     side = (chosen >= len(strikes[0])).astype(int)
     ahead_m, width_m = (_apart(run, axis)[ticks] for axis in (0, 1))
     length_m = np.where(side == 0, ahead_m, -ahead_m)
-    return _way(run, True, _Landings(ticks, run.time_s[ticks], side, length_m, width_m), moved_m)
+    landings = _Landings(ticks, run.time_s[ticks], side, length_m, width_m)
+    return _way(run, True, landings, _moved(run))
+
+
+def _moved(run: Run) -> np.ndarray:
+    """The CoM along x, since the tick before."""
+    velocity_m_s = np.where(_known(run, "com"), run.column("input", "com_velocity_m_s", 0), np.nan)
+    means_m_s = (velocity_m_s[1:] + velocity_m_s[:-1]) / 2
+    moved_m = np.append(0.0, means_m_s * np.diff(run.time_s))
+    moved_m[run.after_silence] = np.nan
+    return moved_m
 
 
 def _apart(run: Run, axis: int) -> np.ndarray:
@@ -117,13 +123,13 @@ def _strikes(run: Run, side: str) -> np.ndarray:
     """
     known = _known(run, side)
     contact = known & (run.column("input", f"{side}_contact") > 0)
-    since_s = np.append(0.0, np.diff(run.time_s))
-    air_s = np.where(known & ~contact, since_s, 0.0)
+    air_s = np.append(0.0, np.diff(run.time_s))
+    air_s[contact | ~known] = 0.0
     total_s = np.cumsum(air_s)
-    silent = np.append(0.0, run.silent_s[:-1]) > 0
-    begun_s = np.where(silent, total_s - air_s, 0.0)
-    begun_s[1:] = np.fmax(begun_s[1:], np.where(contact[:-1], total_s[:-1], 0.0))
-    airborne_s = total_s - np.maximum.accumulate(begun_s)
+    begun_s = np.append(0.0, np.where(contact[:-1], total_s[:-1], 0.0))
+    silent = np.flatnonzero(run.after_silence)
+    begun_s[silent] = total_s[silent] - air_s[silent]
+    airborne_s = total_s - np.maximum.accumulate(begun_s, out=begun_s)
     return np.flatnonzero(contact & (airborne_s >= SWING_MIN_S - ROUNDING_S))
 
 
