@@ -7,6 +7,7 @@ from typing import Any
 
 from saddlewalk.logs.run_files import reported
 from saddlewalk.outputs import add_input, add_output
+from saddlewalk.printable import printable
 
 
 def add_parser(subparsers: Any) -> None:
@@ -40,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
     with whole_file("--out", args.out, "wb") as file:
         file.write(page.encode())
     told = sys.stderr if str(args.out) == "-" else sys.stdout
-    print(*in_words(session), args.out, sep="\n", file=told)
+    print(*in_words(session), printable(args.out), sep="\n", file=told)
     if session.broken:
         print(f"incomplete: {session.broken}", file=sys.stderr)
     return 1 if session.broken else 0

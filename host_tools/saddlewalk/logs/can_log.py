@@ -127,6 +127,13 @@ def _checked(frame: can.Message) -> can.Message:
 class _Blf(can.BLFReader):
     """python-can's reader, which follows sizes without end or bound, with these checked first."""
 
+    def __init__(self, path: Path) -> None:
+        try:
+            super().__init__(path)
+        except Exception:
+            self.file.close()
+            raise
+
     def __iter__(self) -> Iterator[can.Message]:
         while header := self.file.read(_BLF_OBJECT.size):
             signature, _, _, size, kind = _BLF_OBJECT.unpack(header)

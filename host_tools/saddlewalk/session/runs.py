@@ -196,7 +196,7 @@ class Run:
         exact = kept.dtype == np.float32 or kept.dtype.itemsize < 4
         numbers = np.full(self.ticks, np.nan, np.float32 if exact else np.float64)
         numbers[self.channels[name].there(self.ticks)] = kept
-        numbers[np.isinf(numbers)] = np.nan
+        numbers[~np.isfinite(numbers)] = np.nan  # also a NaN that signals
         return numbers
 
     def bits(self, name: str, member: str) -> np.ndarray:

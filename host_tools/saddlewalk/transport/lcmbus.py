@@ -2,11 +2,13 @@
 
 import select
 import time
+from pathlib import Path
 
 import lcm
 
 from saddlewalk.errors import UserError
 from saddlewalk.standard_error import standard_error_silent
+from saddlewalk.transport.lcm_log import LcmLog
 
 DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"
 ROUTE = "sudo ip route add 224.0.0.0/4 dev lo"
@@ -18,6 +20,7 @@ def open_lcm(url: str | None = None) -> lcm.LCM:
     Raises UserError with the remedy when LCM cannot start, as without a multicast route.
     """
     url = url or DEFAULT_URL
+    _check_log(url)
     try:
         with standard_error_silent():
             return lcm.LCM(url)
@@ -26,6 +29,19 @@ def open_lcm(url: str | None = None) -> lcm.LCM:
         if not url.startswith("udpm:"):
             right = f"give an LCM URL such as {DEFAULT_URL}"
         raise UserError(f"LCM {url} cannot be opened: {right}") from error
+
+
+def _check_log(url: str) -> None:
+    """A log that lcm will play, whose lengths it trusts, is read to its end before."""
+    scheme, _, rest = url.partition("://")
+    path, _, options = rest.partition("?")
+    if scheme != "file" or "mode=w" in options:
+        return
+    log = LcmLog(Path(path))
+    for _ in log:
+        pass
+    if log.broken:
+        raise UserError(f"LCM {url} cannot be played: {log.broken}")
 
 
 def receive(bus: lcm.LCM, within_s: float = 0.0) -> bool:
