@@ -202,7 +202,7 @@ def test_a_push_that_fells_is_foreseen_and_judged_by_its_ticks():
     config = default_config()
     trial = replace(draw(1, 0, "planned", MASS_KG), impulse_n_s=60.0, direction_deg=90.0)
     course = run(trial, config)
-    walk, ticks, fell_at_s = judge(trial, course), course.ticks, course.fell_at_s
+    walk, ticks, fell_at_s = judge(trial, course, course), course.ticks, course.fell_at_s
     assert walk.fell and trial.push_time_s < walk.alarm_at_s < fell_at_s
     assert ticks["time_s"][-1] < fell_at_s
     since_push_s = ticks["time_s"] - trial.push_time_s

@@ -3,6 +3,7 @@
 import csv
 import gzip
 import io
+import itertools
 import json
 import math
 import shutil
@@ -18,7 +19,8 @@ from saddlewalk import paths
 from saddlewalk.cli import main
 from saddlewalk.config import configuration
 from saddlewalk.emulation import closed_loop
-from saddlewalk.emulation.wearer import Body, Noise, Push, Wearer
+from saddlewalk.emulation.wearer import Body, Wearer
+from saddlewalk.evaluation import walks
 from saddlewalk.evaluation.emulated import Witness
 from saddlewalk.evaluation.fall_pictures import (
     draw_walk,
@@ -39,6 +41,7 @@ from saddlewalk.evaluation.scoring import (
     score,
     states_of,
 )
+from saddlewalk.evaluation.walks import EXACT_SENSORS, draw, judge
 from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.recorded_states import STATE_COLUMNS
 from saddlewalk.verdict import LEVELS, reason_name
@@ -182,7 +185,7 @@ def test_walkers_have_their_own_body_unless_the_configuration_says_otherwise(fol
         "body_height_m": "1.5",
         "level_hold_ticks": "1.0",
     }
-    assert other[EARLY] != own[EARLY]
+    assert {**other, "config": None} != {**own, "config": None}
 
 
 def test_the_command_tells_and_draws(folder, tmp_path, capsys):
@@ -332,33 +335,40 @@ def test_levels_of_a_steady_walk_count_when_it_has_settled():
     assert found["pushed"] == 0 and math.isnan(found["announced_pct"])
 
 
-def test_without_sensor_noise_both_supervisors_of_an_emulated_walk_say_the_same():
+def test_an_emulated_walk_is_scored_with_noise_without_and_late():
+    config = configuration({})
+    trial = replace(draw(1, 0, "planned", 63.3), impulse_n_s=60.0, direction_deg=90.0)
+    noisy, exact = (walks.run(trial, config, noise) for noise in (None, EXACT_SENSORS))
+    walk = judge(trial, noisy, exact)
+    assert list(walk.scores) == list(INPUTS)
+    (first,), (second,), (late,) = walk.scores.values()
+    assert (second.kind, second.fall_s, second.alarm_s) == ("random", *fate_of(walk))
+    assert (first.fall_s, first.alarm_s) == fate_of(judge(trial, exact, exact))
+    assert late.alarm_s == pytest.approx(first.alarm_s + 0.08)
+    assert first.least != second.least
+
+
+def fate_of(walk) -> tuple[float, float]:
+    return walk.fell_at_s, walk.alarm_at_s
+
+
+def test_exact_sensors_see_the_state_itself():
     config, schedule = configuration({}), schedule_of([(0.0, 0.0), (1.0, 1.0)], 0.1)
-    silent = Noise(position_m=0.0, velocity_m_s=0.0)
-    wearer = Wearer(Body.of(config), silent, (Push(15.0, 6.0, 90.0),), takes_recovery_step=False)
-    witness = Witness(config, schedule)
-    for tick in closed_loop.walk(config, wearer, schedule):
-        if wearer.fallen or tick.time_s > 12:
-            break
-        witness.see(tick, wearer)
-    scores = witness.scores("random", 6.0, wearer.fell_at_s)
-    assert wearer.fallen and list(scores) == list(INPUTS)
-    assert repr(scores["exact"]) == repr(scores["noise"])
-    (exact,), (late,) = scores["exact"], scores["one_tick_late"]
-    assert late.alarm_s == pytest.approx(exact.alarm_s + 0.08)
+    wearer = Wearer(Body.of(config), EXACT_SENSORS)
+    ticks = itertools.islice(closed_loop.walk(config, wearer, schedule), 40)
+    assert all(tick.measured == tick.exact for tick in ticks)
 
 
 def test_the_steady_part_of_an_emulated_walk_begins_with_walking():
     config, schedule = configuration({}), schedule_of([(0.0, 0.0), (1.0, 1.0), (9.0, 0.0)], 0.1)
-    wearer, witness = Wearer(Body.of(config)), Witness(config, schedule)
-    for tick in closed_loop.walk(config, wearer, schedule):
-        if tick.time_s > 14:
-            break
+    wearer, witness = Wearer(Body.of(config)), Witness(config)
+    for tick in itertools.islice(closed_loop.walk(config, wearer, schedule), 175):
         witness.see(tick, wearer)
-    calm, whole = witness.scores("start_stop", math.nan, math.nan)["exact"]
+    parts = witness.parts("start_stop", math.nan, math.nan)
+    calm, whole = (score(*part) for part in parts)
     ticks = [sum(sum(each.values()) for each in part.levels.values()) for part in (calm, whole)]
     assert (calm.kind, whole.kind) == ("calm", "start_stop")
-    assert 50 < ticks[0] < 100 and ticks[1] == 14 / 0.08
+    assert 50 < ticks[0] < 100 and ticks[1] == 174
 
 
 def damaged():

@@ -146,19 +146,17 @@ def _emulate(
 
 
 def _emulated_figures(args: argparse.Namespace, walks: Sequence["Walk"]) -> Figures:
+    from saddlewalk.evaluation.scoring import INPUTS
     from saddlewalk.evaluation.side_by_side import walker_figures
 
-    scores = [
-        dict(zip(walk.scores, parts, strict=True))
-        for walk in walks
-        for parts in zip(*walk.scores.values(), strict=True)
-    ]
+    scores = {name: [part for walk in walks for part in walk.scores[name]] for name in INPUTS}
     return walker_figures(scores, {name: str(value) for name, value in given_fields(args).items()})
 
 
 def _score_falls(args: argparse.Namespace) -> tuple[dict[str, Figures], Writer]:
     """Score every recorded walk; figures by walker, and what writes their files."""
     from saddlewalk.evaluation.recorded_falls import read_walkers, read_walks, score_walks
+    from saddlewalk.evaluation.scoring import INPUTS
     from saddlewalk.evaluation.side_by_side import walker_figures
 
     given = {name: str(value) for name, value in given_fields(args).items()}
@@ -174,7 +172,8 @@ def _score_falls(args: argparse.Namespace) -> tuple[dict[str, Figures], Writer]:
     by_walker = {name: list(itertools.islice(scored, len(each))) for name, each in walks.items()}
     figures = {
         walker.name: walker_figures(
-            [each.scores for each in by_walker[walker.name]], walker.body | given
+            {name: [each.scores[name] for each in by_walker[walker.name]] for name in INPUTS},
+            walker.body | given,
         )
         for walker in walkers
     }

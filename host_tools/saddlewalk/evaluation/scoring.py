@@ -201,12 +201,6 @@ def one_tick_late(said: Announced) -> Announced:
     )
 
 
-def scores_by_inputs(walk: Walk, exact: Announced, noisy: Announced) -> dict[str, Score]:
-    """One for each of INPUTS."""
-    said = (exact, noisy, one_tick_late(exact))
-    return {name: score(walk, each) for name, each in zip(INPUTS, said, strict=True)}
-
-
 def score(walk: Walk, said: Announced) -> Score:
     t_s = walk.states.t_s
     after = t_s >= walk.push_s

@@ -26,9 +26,9 @@ LEVELS = ("unstable", "caution", "unknown")
 Figures = Mapping[str, Any]
 
 
-def walker_figures(scores: Sequence[Mapping[str, Score]], config: Mapping[str, str]) -> Figures:
+def walker_figures(scores: Mapping[str, Sequence[Score]], config: Mapping[str, str]) -> Figures:
     """Those on exact inputs; those on the other INPUTS under their names. scores: by INPUTS."""
-    by_inputs = {name: figures([each[name] for each in scores], config) for name in INPUTS}
+    by_inputs = {name: figures(scores[name], config) for name in INPUTS}
     return {**by_inputs.pop("exact"), **by_inputs}
 
 

@@ -17,10 +17,11 @@ import numpy as np
 
 from saddlewalk.core import ffi, library
 from saddlewalk.emulation import closed_loop
-from saddlewalk.emulation.wearer import STANDING, WALKING, Body, Push, Wearer
+from saddlewalk.emulation.wearer import STANDING, WALKING, Body, Noise, Push, Wearer
+from saddlewalk.evaluation import scoring
 from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_margin_m
 from saddlewalk.evaluation.emulated import Witness
-from saddlewalk.evaluation.scoring import Score
+from saddlewalk.evaluation.scoring import Announced, Score, one_tick_late, score
 from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.ticks import TICK_S
 
@@ -46,6 +47,7 @@ SOON_S = 5 * TICK_S  # evidence to warn by, from the beginning of the push
 WINDOWS = ("to the fall", "to 0.24 s before", "first 0.4 s")
 HEEL_STRIKE_RAD = math.radians(10)
 CALM_SHARE = 0.1  # walks without a push, beside those with one
+EXACT_SENSORS = Noise(position_m=0.0, velocity_m_s=0.0)
 START_S, STOP_S, CALM_S = 1.0, 25.0, 30.0
 
 FIELDS = (
@@ -94,7 +96,7 @@ class Course:
 
     ticks: np.ndarray  # of TICK
     fell_at_s: float  # NaN: did not
-    scores: dict[str, list[Score]]  # by INPUTS
+    parts: list[tuple[scoring.Walk, Announced]]  # as every walker is scored
 
 
 @dataclass(frozen=True)
@@ -169,14 +171,19 @@ def calm_walks(walks: int) -> int:
 def _work(seed: int, chain: list[int], kind: str, image: bytes) -> list[Walk]:
     config = ffi().new("saddle_config_t *")
     ffi().memmove(config, image, len(image))
-    return [judge(*walk) for walk in _walk_chain(seed, chain, kind, config)]
+    return [
+        judge(trial, course, run(trial, config, EXACT_SENSORS))
+        for trial, course in _walk_chain(seed, chain, kind, config)
+    ]
 
 
-def run(trial: Trial, config: Any) -> Course:
+def run(trial: Trial, config: Any, noise: Noise | None = None) -> Course:
+    """noise: the wearer's own by default."""
     pushed = trial.impulse_n_s > 0
     push = Push(trial.impulse_n_s, trial.push_time_s, trial.direction_deg)
     wearer = Wearer(
         Body.of(config),
+        noise,
         pushes=(push,) if pushed else (),
         seed=trial.wearer_seed,
         takes_recovery_step=trial.kind == "recovery",
@@ -185,7 +192,7 @@ def run(trial: Trial, config: Any) -> Course:
     speeds = [(0.0, 0.0), (START_S, trial.speed_m_s), *stop]
     schedule = schedule_of(speeds, HEEL_STRIKE_RAD)
     end_s = trial.push_time_s + OBSERVED_S if pushed else CALM_S
-    rows, witness = [], Witness(config, schedule)
+    rows, witness = [], Witness(config)
     for tick in closed_loop.walk(config, wearer, schedule):
         if tick.time_s >= end_s or wearer.fallen:
             break
@@ -193,10 +200,9 @@ def run(trial: Trial, config: Any) -> Course:
         witness.see(tick, wearer)
     ticks = np.array(rows, dtype=TICK)
     _add_baselines(ticks, config)
-    scores = witness.scores(
-        _scored_kind(trial), trial.push_time_s if pushed else math.nan, wearer.fell_at_s
-    )
-    return Course(ticks, wearer.fell_at_s, scores)
+    push_s = trial.push_time_s if pushed else math.nan
+    parts = witness.parts(_scored_kind(trial), push_s, wearer.fell_at_s)
+    return Course(ticks, wearer.fell_at_s, parts)
 
 
 def _scored_kind(trial: Trial) -> str:
@@ -253,8 +259,8 @@ def _add_baselines(ticks: np.ndarray, config: Any) -> None:
     ticks["hof_xcom_m"] = hof_margin_m(xcom_m, cop_m, contact, half_m)
 
 
-def judge(trial: Trial, course: Course) -> Walk:
-    """What a walk tells."""
+def judge(trial: Trial, course: Course, exact: Course) -> Walk:
+    """What a walk tells, and the same walk with exact sensors."""
     ticks, fell_at_s = course.ticks, course.fell_at_s
     time_s, level = ticks["time_s"], ticks["level"]
     pushed = np.full(len(ticks), trial.impulse_n_s > 0) & (time_s >= trial.push_time_s)
@@ -274,7 +280,11 @@ def judge(trial: Trial, course: Course) -> Walk:
         walking_levels=_counts(level[walking]),
         walking_reasons=_counts(ticks["reason"][walking]),
         moving_levels=_counts(level[moving]),
-        scores=course.scores,
+        scores={
+            "exact": [score(*part) for part in exact.parts],
+            "noise": [score(*part) for part in course.parts],
+            "one_tick_late": [score(walk, one_tick_late(said)) for walk, said in exact.parts],
+        },
     )
 
 
