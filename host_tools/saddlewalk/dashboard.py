@@ -1,9 +1,10 @@
 """What the firmware says about one walk, for people: `render` for a terminal, `summary` as a line.
 
 Both take LCM messages (plan_t, scores_t, verdict_t, health_t, status_t, or None while one has not
-come) and how long the firmware has been silent. They draw what the messages hold and judge nothing,
-except that silence makes the level unknown. Colour repeats a word or the sign of a number and is
-never the only sign of anything.
+come), how long the firmware has been silent, and whether the wearer is known to have fallen. They
+draw what the messages hold and judge nothing, except that silence makes the level unknown, and that
+no score says anything after a fall. Colour repeats a word or the sign of a number and is never the
+only sign of anything.
 """
 
 import math
@@ -60,18 +61,23 @@ MISSING = {
 SCORES = (("S_pend", "s_pend"), ("S_jump", "s_jump"), ("S_SW", "s_sw"))
 MARGINS = (("CoM in BoS", "mos_com_m"), ("XCoM in BoS", "mos_xcom_m"))
 EXPECTED = (("CoM in E-BoS", "ebos_com_m"), ("XCoM in E-BoS", "ebos_xcom_m"))
+FELL = "fell"  # in the place of a level
 LEVEL_STYLES = dict(zip(LEVELS, ("magenta", "green", "yellow", "red"), strict=True))
+LEVEL_STYLES[FELL] = "red"
 MARGIN_SCALE_M = 0.4
 BAR_CELLS = 25
 NOT_AVAILABLE = "n/a"
 
 
-def render(plan, scores, verdict, health, status, silent_s: float = 0.0) -> RenderableType:
+def render(
+    plan, scores, verdict, health, status, silent_s: float = 0.0, fallen: bool = False
+) -> RenderableType:
     """A panel: the level, large, and what decided it; gait, scores, margins, energy and health."""
     if all(message is None for message in (plan, scores, verdict, health, status)):
         return Panel(Text(waiting(silent_s)), title="saddlewalk", border_style="yellow")
-    level, words = announced(verdict, silent_s)
+    level, words = announced(verdict, silent_s, fallen)
     style = LEVEL_STYLES.get(level, "")
+    scores, verdict = (None, None) if fallen else (scores, verdict)
     parts = [
         Text(large(level.upper()), style=f"bold {style}"),
         Text(f"level: {level}{words and f', {words}'}", style="bold"),
@@ -85,12 +91,15 @@ def render(plan, scores, verdict, health, status, silent_s: float = 0.0) -> Rend
     return Panel(Group(*parts), title="saddlewalk", border_style=style)
 
 
-def summary(plan, scores, verdict, health, status, silent_s: float = 0.0) -> str:
+def summary(
+    plan, scores, verdict, health, status, silent_s: float = 0.0, fallen: bool = False
+) -> str:
     """The same on one line of plain text."""
     nothing = all(message is None for message in (plan, scores, verdict, health, status))
     if silent_s > SILENT_AFTER_S or nothing:
         return waiting(silent_s)
-    level, words = announced(verdict, silent_s)
+    level, words = announced(verdict, silent_s, fallen)
+    scores, verdict = (None, None) if fallen else (scores, verdict)
     return " | ".join(
         (
             f"{level.upper()}{words and f': {words}'}",
@@ -104,8 +113,10 @@ def summary(plan, scores, verdict, health, status, silent_s: float = 0.0) -> str
     )
 
 
-def announced(verdict, silent_s: float) -> tuple[str, str]:
+def announced(verdict, silent_s: float, fallen: bool) -> tuple[str, str]:
     """The level and what decided it, in words. What is old is not known any more."""
+    if fallen:
+        return FELL, "the wearer lies on the ground, scores are not available"
     if silent_s > SILENT_AFTER_S:
         return LEVELS[0], waiting(silent_s)
     if verdict is None:

@@ -1,12 +1,13 @@
 """Words three lines high, to be read from across the room."""
 
 GAP = " "
-# Row by row; as many letters as the names of the levels need.
+# Row by row; as many letters as the names of the levels, and a fall, need.
 LETTERS = {
     "A": ("▄▀▄", "█▀█", "▀ ▀"),
     "B": ("█▀▄", "█▀▄", "▀▀ "),
     "C": ("▄▀▀", "█  ", " ▀▀"),
     "E": ("█▀▀", "█▀▀", "▀▀▀"),
+    "F": ("█▀▀", "█▀ ", "▀  "),
     "I": ("█", "█", "▀"),
     "K": ("█ █", "█▀▄", "▀ ▀"),
     "L": ("█  ", "█  ", "▀▀▀"),

@@ -1,5 +1,6 @@
 """`saddlewalk demo` and `emulate` end to end, with the real firmware process on private ports."""
 
+import argparse
 import csv
 import functools
 import itertools
@@ -14,9 +15,12 @@ from pathlib import Path
 
 import can
 import lcm
+import numpy as np
 import pytest
 
 from saddlewalk.cli import main
+from saddlewalk.config import load_config
+from saddlewalk.emulation.wearer import Push
 from saddlewalk.logs.recorder import CHANNELS, COLUMNS
 from saddlewalk.ticks import TICK_S
 from saddlewalk.transport.bus import open_bus, private_udp
@@ -102,15 +106,54 @@ def test_demo_in_lockstep_gives_the_same_bits_each_time(tmp_path, ports):
     assert one == two != other
 
 
-def test_a_fall_is_told_and_is_not_sound(tmp_path, ports, capsys):
+def test_a_fall_is_told_and_is_not_sound(tmp_path, ports, capsys, monkeypatch):
+    from saddlewalk.commands import demo as command
+
+    monkeypatch.setattr(command, "LINE_S", 0.0)
     assert demo(tmp_path, ports, "--speed", "1.2", "--duration", "6", "--push", "80@3:90") == 1
     told = capsys.readouterr().out
     assert "fell at" in told and "BAD  the wearer fell" in told
+    assert "stands at the end" not in told  # though the plan stands
+    assert_nothing_is_scored_after_the_fall(told, rows(tmp_path))
     assert {path.name for path in tmp_path.iterdir()} == FILES
     walk = rows(tmp_path)
     assert walk[-1]["fallen"] == "1"
     alarms = {row["level"] for row in walk if row["fallen"] == "0" and float(row["t_s"]) > 3}
     assert "unstable" in alarms and {row["reason"] for row in walk} >= {"none", "no_step"}
+
+
+def assert_nothing_is_scored_after_the_fall(told: str, walk: list[dict[str, str]]) -> None:
+    """In the live line and in the times of the levels; walk.csv has what the firmware published."""
+    upright = [row["level"] for row in walk if row["fallen"] == "0"]
+    levels = next(line for line in told.splitlines() if line.startswith("level: "))
+    assert levels.endswith(", until the fall")
+    times_s = [float(word) for word in levels.split() if word[0].isdigit()]
+    assert sum(times_s) == pytest.approx(len(upright) * TICK_S, abs=0.2)
+    live = [line for line in told.splitlines() if line.startswith("FELL: ")]
+    assert live and all("S_pend n/a" in line and "energy: n/a" in line for line in live)
+
+
+def test_the_picture_marks_the_fall_and_keeps_the_com_in_view(tmp_path, ports):
+    from saddlewalk.pictures.walk import figure_of, read_walk, until_fall
+
+    assert demo(tmp_path, ports, "--speed", "1.2", "--duration", "6", "--push", "80@3:90") == 1
+    walk = read_walk(tmp_path / "walk.csv")
+    fell_s = walk["t_s"][walk["fallen"] > 0][0]
+    shown = until_fall(walk, fell_s)
+    for name in ("s_pend", "mos_xcom_m", "ebos_xcom_m", "level", "true_com_z_m"):
+        assert np.isfinite(walk[name][walk["t_s"] > fell_s]).any(), name
+        assert np.isnan(shown[name][walk["t_s"] > fell_s]).all(), name
+    config = load_config(argparse.Namespace(height=None, mass=None, config=None))
+    figure = figure_of(walk, [Push(80, 3, 90)], config, fell_s)
+    whole, above, *over_time = figure.axes
+    for axes in (whole, above):
+        (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+        x_m, y_m = walk["true_com_x_m"][-1], walk["true_com_y_m"][-1]
+        assert left < x_m < right and bottom < y_m < top
+        assert "fell" in [text.get_text() for text in axes.texts]
+    for axes in over_time:
+        marks = [line.get_xdata() for line in axes.lines if line.get_label() == "fell"]
+        assert [list(mark) for mark in marks] == [[fell_s, fell_s]]
 
 
 def test_demo_in_real_time(tmp_path, ports):

@@ -163,6 +163,31 @@ def test_a_level_without_a_reason_stands_alone():
     assert dashboard.summary(*view(verdict=message)).startswith("STABLE | plan:")
 
 
+def test_after_a_fall_no_score_is_shown():
+    """The firmware goes on scoring the posture that it measures, of somebody who lies there."""
+    for text in (drawn(*view(), fallen=True), dashboard.summary(*view(), fallen=True)):
+        assert "fell" in text.lower() and "scores are not available" in text
+        for label in ("S_pend", "S_jump", "S_SW", "CoM in BoS", "XCoM in E-BoS"):
+            assert re.search(rf"{re.escape(label)} .*?n/a", text), label
+        assert "energy: n/a" in text and "recovery step: n/a" in text
+        for number in ("0.62", "+0.083 m", "-4.5 J", "0.21 m of reach", "CAUTION"):
+            assert number not in text
+    assert large("FELL") != "FELL"
+    assert "█" not in drawn(*view(), fallen=True).split("S_pend")[1]
+
+
+def test_the_listener_knows_of_a_fall_while_it_is_told_of_one():
+    from saddlewalk.transport.lcm_types import truth_t
+
+    listener, truth = Listener(), truth_t()
+    for fallen in (0, 1, 0, 1):
+        truth.fallen = fallen
+        listener.take("SADDLEWALK_TRUTH", truth.encode())
+        assert listener.fallen == bool(fallen) and not listener.complete
+    listener.truth = (listener.truth[0] - dashboard.SILENT_AFTER_S, truth)
+    assert not listener.fallen
+
+
 def test_an_old_level_is_not_shown():
     text = drawn(*view(), silent_s=1.4)
     assert "level: unknown, no message from the firmware for 1.4 s" in text

@@ -115,7 +115,8 @@ def _walk(args: argparse.Namespace, config: Any, lcm: Any) -> int:
         checks = walk_checks(wearer, exoskeleton, stops)
         checks += [*transport_checks(exoskeleton, recorder), *log_checks(recorder, config, by_can)]
         picture = recorder.csv_path.with_name(PICTURE)
-        draw_walk(recorder.csv_path, picture, wearer.pushes, config)
+        fell_s = wearer.fell_at_s if wearer.fallen else None
+        draw_walk(recorder.csv_path, picture, wearer.pushes, config, fell_s)
     return _finish(args.out, wearer, exoskeleton, recorder, checks)
 
 
@@ -265,7 +266,7 @@ def _finish(
 ) -> int:
     """Tell; 0 only if the walk was sound."""
     print(summary(wearer, exoskeleton))
-    print(level_times(recorder))
+    print(level_times(recorder) + (", until the fall" if wearer.fallen else ""))
     if exoskeleton.punctuality:
         print(f"timing: {exoskeleton.punctuality.words()}")
     for good, words in checks:

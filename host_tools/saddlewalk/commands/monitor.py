@@ -16,6 +16,7 @@ CHANNELS = {
     "SADDLEWALK_HEALTH": "health_t",
     "SADDLEWALK_STATUS": "status_t",
 }
+TRUTH = "SADDLEWALK_TRUTH"  # of an emulated wearer, who may have fallen
 
 
 def add_parser(subparsers: Any) -> None:
@@ -48,11 +49,12 @@ class Listener:
     """The newest message of each channel, when any came, and how many could not be read."""
 
     latest: dict[str, Any] = field(default_factory=dict)
+    truth: tuple[float, Any] | None = None  # when it came, and what
     heard_s: float = field(default_factory=time.monotonic)
     malformed: int = 0
 
     def subscribe(self, bus: Any) -> None:
-        for channel in CHANNELS:
+        for channel in (*CHANNELS, TRUTH):
             bus.subscribe(channel, self.take)
 
     def take(self, channel: str, data: bytes) -> None:
@@ -60,12 +62,25 @@ class Listener:
         from saddlewalk.transport import lcm_types
 
         try:
-            message = getattr(lcm_types, CHANNELS[channel]).decode(data)
+            message = getattr(lcm_types, CHANNELS.get(channel, "truth_t")).decode(data)
         except Exception:  # the generated decoders raise ValueError, struct.error or IndexError
             self.malformed += 1
             return
+        if channel == TRUTH:
+            self.truth = time.monotonic(), message
+            return
         self.latest[channel] = message
         self.heard_s = time.monotonic()
+
+    @property
+    def fallen(self) -> bool:
+        """The wearer has fallen, as far as is known now."""
+        from saddlewalk.dashboard import SILENT_AFTER_S
+
+        if self.truth is None:
+            return False
+        told_s, truth = self.truth
+        return bool(truth.fallen) and time.monotonic() - told_s < SILENT_AFTER_S
 
     @property
     def complete(self) -> bool:
@@ -87,9 +102,9 @@ class Listener:
         return Group(panel, self._note()) if self.malformed else panel
 
     def _view(self) -> tuple[Any, ...]:
-        """The newest of CHANNELS, and for how long nothing came."""
+        """The newest of CHANNELS, for how long nothing came, and whether the wearer has fallen."""
         latest = (self.latest.get(channel) for channel in CHANNELS)
-        return *latest, time.monotonic() - self.heard_s
+        return *latest, time.monotonic() - self.heard_s, self.fallen
 
     def _note(self) -> str:
         return f"{self.malformed} LCM messages could not be read"

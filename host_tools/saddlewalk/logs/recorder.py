@@ -55,7 +55,7 @@ class Recorder(Observer):
         self.can_path = folder / CAN_LOG
         self.csv_path = folder / TABLE
         self.frames = self.rows = self.lcm_messages = 0
-        self.levels: list[str] = []  # announced, of each tick
+        self.levels: list[str] = []  # announced, of each tick until a fall
         try:
             self._csv_file = self.csv_path.open("w", newline="")
             self._can_log = can.CanutilsLogWriter(self.can_path, channel="saddlewalk")
@@ -85,7 +85,8 @@ class Recorder(Observer):
     def tick(self, tick: Tick, wearer: Wearer) -> None:
         self._csv.writerow(format_cell(cell) for cell in row(tick, wearer))
         self.rows += 1
-        self.levels.append(verdict.level_name(int(tick.messages["VERDICT"]["LEVEL"])))
+        if not wearer.fallen:
+            self.levels.append(verdict.level_name(int(tick.messages["VERDICT"]["LEVEL"])))
 
     def poll(self) -> None:
         for _ in range(LCM_QUEUE):

@@ -20,8 +20,9 @@ matplotlib.use("Agg")
 # Okabe and Ito's colours, which the colour-blind can tell apart; line styles differ as well.
 BLUE, SKY, GREEN, ORANGE, RED, PINK = "#0072B2 #56B4E9 #009E73 #E69F00 #D55E00 #CC79A7".split()
 BEFORE_S, AFTER_S = 1.2, 3.0  # the part of the walk shown closely, about the first push
+LYING_S = 0.5  # shown of a wearer who has fallen
 FOOT_M = (0.26, 0.09)
-MARGIN_SHOWN_M = -0.8  # after a fall it is far below
+MARGIN_SHOWN_M = -0.8  # during a fall it goes far below
 FEET = (("left", GREEN), ("right", RED))
 MARGINS = (
     ("mos_com_m", "CoM"),
@@ -35,6 +36,11 @@ LANES = {
     "caution": {"facecolor": ORANGE, "hatch": "///"},
     "unstable": {"facecolor": RED, "hatch": "xxx"},
 }
+# What says nothing of a wearer who lies on the ground.
+OF_A_POSTURE = (
+    *("s_pend", "s_jump", "s_sw", "level", "true_com_vx_m_s", "true_com_z_m"),
+    *(name for name, _ in MARGINS),
+)
 SHADES = {STANDING: "0.85", STARTING: "#DDEEDD", STOPPING: "#F6E3D5"}
 
 Columns = dict[str, np.ndarray]
@@ -54,18 +60,41 @@ def read_walk(path: Path) -> Columns:
     }
 
 
-def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push], config: Any) -> None:
+def until_fall(walk: Columns, fell_s: float | None) -> Columns:
+    """Without the numbers of a posture after a fall."""
+    if fell_s is None:
+        return walk
+    upright = walk["t_s"] <= fell_s
+    return walk | {name: np.where(upright, walk[name], np.nan) for name in OF_A_POSTURE}
+
+
+def draw_walk(
+    csv_path: Path,
+    png_path: Path,
+    pushes: Sequence[Push],
+    config: Any,
+    fell_s: float | None = None,
+) -> None:
     """Draw walk.csv, whole or as far as it goes. config: saddle_config_t of the walker."""
-    walk = read_walk(csv_path)
+    figure_of(read_walk(csv_path), pushes, config, fell_s).savefig(png_path)
+
+
+def figure_of(
+    walk: Columns, pushes: Sequence[Push], config: Any, fell_s: float | None = None
+) -> Figure:
+    walk = until_fall(walk, fell_s)
     figure = Figure(figsize=(13, 14), dpi=110, layout="constrained")
     whole, above, speed, height, scores, level, margins = figure.subplots(
         7, 1, height_ratios=(0.6, 1.7, 0.8, 0.8, 0.9, 0.6, 0.9)
     )
-    shown = _shown(walk["t_s"], pushes)
+    shown = _shown(walk["t_s"], pushes, fell_s)
     closely = {name: column[shown] for name, column in walk.items()}
-    figure.suptitle("A walk: the plan, and the wearer who follows it")
+    fate = "" if fell_s is None else f" and falls at {fell_s:.2f} s"
+    figure.suptitle(f"A walk: the plan, and the wearer who follows it{fate}")
     _draw_whole(whole, walk, closely)
     _draw_above(above, closely, pushes, config)
+    if fell_s is not None:
+        _draw_fall((whole, above), walk)
     _draw_lines(
         speed, walk, (("true_com_vx_m_s", "true"), ("plan_speed_m_s", "planned")), modes=True
     )
@@ -77,11 +106,11 @@ def draw_walk(csv_path: Path, png_path: Path, pushes: Sequence[Push], config: An
     margins.set(ylabel="margin in the base\nof support (m)", xlabel="time (s)")
     margins.set_ylim(bottom=max(margins.get_ylim()[0], MARGIN_SHOWN_M))
     for axes in (speed, height, scores, margins):
-        _mark(axes, pushes)
+        _mark(axes, pushes, fell_s)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     draw_level(level, walk)
-    _mark(level, pushes)
-    figure.savefig(png_path)
+    _mark(level, pushes, fell_s)
+    return figure
 
 
 def _footprint(colour: str) -> dict[str, Any]:
@@ -100,9 +129,13 @@ def _draw_whole(axes: Axes, walk: Columns, closely: Columns) -> None:
     axes.set_ylim(*_lateral_limits(walk))
 
 
-def _shown(time_s: np.ndarray, pushes: Sequence[Push]) -> np.ndarray:
+def _shown(time_s: np.ndarray, pushes: Sequence[Push], fell_s: float | None) -> np.ndarray:
+    """About the first push, or the middle, and to the fall if there was one."""
     centre_s = pushes[0].time_s if pushes else (time_s[-1] + BEFORE_S - AFTER_S) / 2
-    shown = (time_s >= centre_s - BEFORE_S) & (time_s <= centre_s + AFTER_S)
+    from_s, to_s = centre_s - BEFORE_S, centre_s + AFTER_S
+    if fell_s is not None:
+        from_s, to_s = min(from_s, fell_s - AFTER_S), max(to_s, fell_s + LYING_S)
+    shown = (time_s >= from_s) & (time_s <= to_s)
     return shown if shown.any() else np.ones_like(shown)
 
 
@@ -150,8 +183,18 @@ def _draw_stood(
         axes.add_patch(Ellipse(place, *FOOT_M, **style))
 
 
+def _draw_fall(views: Sequence[Axes], walk: Columns) -> None:
+    """Where the CoM came down, and stays."""
+    at = walk["true_com_x_m"][-1], walk["true_com_y_m"][-1]
+    for axes in views:
+        axes.plot(*at, "X", color="black", ms=11, mec="white", zorder=5)
+        axes.annotate("fell", at, (8, 8), textcoords="offset points", weight="bold")
+
+
 def _lateral_limits(walk: Columns) -> tuple[float, float]:
-    lateral = np.concatenate([walk[f"true_{side}_y_m"] for side, _ in FEET])
+    """With room for the feet, and for a CoM that falls away from them."""
+    names = ("true_com_y_m", *(f"true_{side}_y_m" for side, _ in FEET))
+    lateral = np.concatenate([walk[name] for name in names])
     return min(lateral.min() - 0.15, -0.5), max(lateral.max() + 0.15, 0.5)
 
 
@@ -212,7 +255,9 @@ def _spans(time_s: np.ndarray, there: np.ndarray) -> list[tuple[float, float]]:
     return [(time_s[a], time_s[min(b, last)]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def _mark(axes: Axes, pushes: Sequence[Push]) -> None:
+def _mark(axes: Axes, pushes: Sequence[Push], fell_s: float | None) -> None:
     for push in pushes:
         axes.axvline(push.time_s, color=PINK, lw=2.5, zorder=1)
+    if fell_s is not None:
+        axes.axvline(fell_s, color="black", lw=1.5, ls=":", label="fell")
     axes.grid(alpha=0.25)
