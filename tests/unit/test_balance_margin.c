@@ -436,6 +436,43 @@ static void test_reason_of_a_step_that_catches_nothing(void)
     TEST_ASSERT_EQUAL_INT(SADDLE_REASON_SINKING, saddle_driver(&departure, -0.29f));
 }
 
+static saddle_measurement_t measured_plan(const saddle_plan_t *plan)
+{
+    saddle_measurement_t seen = standing();
+    seen.com.height_m = plan->com_m.z;
+    seen.com.velocity_m_s.x = plan->com_velocity_m_s.x;
+    seen.com.velocity_m_s.y = plan->com_velocity_m_s.y;
+    for (int side = 0; side < 2; side++) {
+        seen.foot[side].cop_m.x = plan->foot_m[side].x - plan->com_m.x;
+        seen.foot[side].cop_m.y = plan->foot_m[side].y - plan->com_m.y;
+        seen.foot[side].contact = side == (int)plan->support || plan->foot_m[side].z < 0.002f;
+    }
+    return seen;
+}
+
+/* Whoever walks on the other foot than the plan has is compared with no step of the plan. */
+static void test_walk_out_of_step_with_the_plan_is_no_fall(void)
+{
+    static saddle_context_t other;
+    saddle_input_t walked = {.command = {SADDLE_COMMAND_WALK, 1.2f, 0.17f}};
+    walked.measurement = saddle_no_measurement();
+    saddle_output_t planned;
+    saddle_init(&other, &config);
+    saddle_join(&other, &walked.command);
+    for (; walked.time_us < 560000u; walked.time_us += 80000u) { /* about a step ahead */
+        saddle_tick(&other, &walked, &planned);
+    }
+    input.command = walked.command;
+    saddle_join(&context, &input.command);
+    for (int k = 0; k < 200; k++) {
+        saddle_tick(&other, &walked, &planned);
+        walked.time_us += 80000u;
+        const saddle_measurement_t seen = measured_plan(&planned.plan);
+        tick(&seen);
+        TEST_ASSERT_TRUE(output.verdict.level != (uint8_t)SADDLE_LEVEL_UNSTABLE);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -456,5 +493,6 @@ int main(void)
     RUN_TEST(test_missing_inputs_are_unknown_at_once);
     RUN_TEST(test_plan_adds_what_the_step_to_come_can_do);
     RUN_TEST(test_reason_of_a_step_that_catches_nothing);
+    RUN_TEST(test_walk_out_of_step_with_the_plan_is_no_fall);
     return UNITY_END();
 }

@@ -120,7 +120,7 @@ static saddle_step_t nominal_step(const saddle_model_t *model, const saddle_step
 }
 
 /* The wearer is on the planned step: on its stance foot, if with the other one too. */
-static bool on_planned_step(const saddle_wearer_t *wearer, const saddle_intent_t *intent)
+static bool matches_planned_step(const saddle_wearer_t *wearer, const saddle_intent_t *intent)
 {
     const saddle_measurement_t *measurement = wearer->measurement;
     const bool both =
@@ -172,14 +172,14 @@ static void compare_step(const saddle_model_t *model, const saddle_wearer_t *wea
     saddle_recovery_step(model, &target, &verdict->recovery);
 }
 
-void saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
+bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
                     const saddle_intent_t *intent, saddle_verdict_t *verdict)
 {
     const saddle_step_tracker_t *steps = wearer->steps;
-    if (on_planned_step(wearer, intent)) {
+    if (matches_planned_step(wearer, intent)) {
         const nominal_t planned = {intent->step, intent->com.com_m.x};
         compare_step(model, wearer, &planned, verdict);
-        return;
+        return steps->stance == (uint8_t)intent->step.stance;
     }
     const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
     const float speed_m_s = intent->leads ? intent->step.speed_m_s : steps->v_comp_m_s;
@@ -191,4 +191,5 @@ void saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
     } else if (!walks && (intent->leads || steps->stands)) {
         compare_standing(model, wearer, &intent->com, verdict);
     }
+    return intent->leads && !walks;
 }

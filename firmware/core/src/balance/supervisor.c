@@ -29,7 +29,7 @@ static void no_margin(saddle_verdict_t *verdict)
     verdict->driver = (uint8_t)SADDLE_REASON_NONE;
 }
 
-/* Returns the margin before the plan has a say. on_plan: *verdict compares with a plan that leads. */
+/* Returns the margin before the plan has a say. on_plan: the wearer makes the planned step. */
 static float measure_margin(const saddle_model_t *model, const saddle_learning_t *learning,
                             const saddle_measurement_t *measurement, bool on_plan,
                             saddle_verdict_t *verdict)
@@ -79,15 +79,15 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     saddle_score_posture(model, &posture, scores);
     const uint32_t all_faults = faults | saddle_score_faults(posture.known, scores);
     saddle_compare_nothing(verdict);
+    bool on_plan = false;
     if (com_known && feet_known && scores->bos.defined) {
         const saddle_wearer_t wearer = {steps, measurement, &posture, scores};
-        saddle_compare(model, &wearer, intent, verdict);
+        on_plan = saddle_compare(model, &wearer, intent, verdict);
     }
     no_margin(verdict);
     if (com_known && feet_known) {
         saddle_learning_t *learning = &supervisor->learning;
         saddle_learning_watch(learning, measurement, dt_s);
-        const bool on_plan = intent->leads && verdict->compared;
         const float own = measure_margin(model, learning, measurement, on_plan, verdict);
         saddle_learning_update(learning, model, steps, own, dt_s);
         steps->disturbed = own <= model->config.learn_margin;
