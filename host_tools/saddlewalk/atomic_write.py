@@ -18,6 +18,7 @@ from types import TracebackType
 from typing import IO, Self
 
 from saddlewalk.errors import UserError
+from saddlewalk.printable import printable
 
 STDIN, STDOUT, STDERR = range(3)
 UNFINISHED = "unfinished"
@@ -124,8 +125,8 @@ class RunFolder:
         os.close(self._lock)
         if kind and self.earlier:
             print(
-                f"{self.folder} still holds the run before; what was recorded of this one is in "
-                f"{self._new}",
+                f"{printable(self.folder)} still holds the run before; what was recorded of this "
+                f"one is in {printable(self._new)}",
                 flush=True,
             )
             return

@@ -21,6 +21,7 @@ from saddlewalk.config import host_arguments, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.logs.run_files import CAN_LOG, LCM_LOG, PICTURE, TABLE, run_names
 from saddlewalk.outputs import OutputFolder, add_input, add_output
+from saddlewalk.printable import printable
 
 if TYPE_CHECKING:
     from saddlewalk.atomic_write import RunFolder
@@ -272,7 +273,7 @@ def _finish(
     for good, words in checks:
         print(f"  {'ok ' if good else 'BAD'}  {words}")
     for path in (folder / name for name in (PICTURE, TABLE, CAN_LOG, LCM_LOG)):
-        print(f"  {path}  {path.stat().st_size / 1024:.0f} KiB")
+        print(f"  {printable(path)}  {path.stat().st_size / 1024:.0f} KiB")
     return 0 if all(good for good, _ in checks) else 1
 
 

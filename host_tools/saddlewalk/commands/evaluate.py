@@ -15,6 +15,7 @@ from saddlewalk.atomic_write import write_text
 from saddlewalk.config import add_body_options, given_fields, load_config
 from saddlewalk.options import add_campaign_options, whole_number_in
 from saddlewalk.outputs import OutputFolder, add_input, add_output
+from saddlewalk.printable import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -314,7 +315,7 @@ def _write(console: "Console", folder: Path, writers: Sequence[Writer]) -> None:
     with whole_folder("--out", folder, FILES) as new:
         told = [line for writer in writers for line in writer(new)]
     for line in told:
-        console.print(f"  {folder / line}")
+        console.print(f"  {printable(folder / line)}", markup=False)
 
 
 def _write_scores(text: str, new: Path) -> Iterator[str]:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from saddlewalk.outputs import OutputFolder, add_input, add_output
+from saddlewalk.printable import printable
 
 PAGE = "paper.html"
 PICTURES = (
@@ -59,5 +60,5 @@ def run(args: argparse.Namespace) -> int:
             (folder / name).write_bytes(content)
     print(verdict(compared, found))
     print(f"{len(trials)} recorded trials" if trials else ONLY_ORENDURFF)
-    print(*(f"  {args.out / name}" for name in files), sep="\n")
+    print(*(f"  {printable(args.out / name)}" for name in files), sep="\n")
     return 0 if all(each.sound for each in compared) and all(each.holds for each in found) else 1

@@ -17,6 +17,7 @@ from saddlewalk.gait.capture import METRES, Capture
 from saddlewalk.gait.gaps import fill_gaps
 from saddlewalk.gait.recording import ABSURD_M, Recording, load_recording
 from saddlewalk.gait.trc_file import read_trc
+from saddlewalk.printable import printable
 from saddlewalk.toml_file import read_toml
 
 POINTS = ("front", "rear", "left_heel", "left_toe", "right_heel", "right_toe")
@@ -194,7 +195,7 @@ def _in_task_frame(
     way_m = np.stack([belt_m_s * (time_s - time_s[0]), 0 * time_s, 0 * time_s], axis=1) - origin_m
     treadmill = f"treadmill at {belt_m_s:.3g} m/s" if belt_m_s else ""
     return Recording(
-        source=", ".join(filter(None, (Path(source).name, treadmill, *notes))),
+        source=printable(", ".join(filter(None, (Path(source).name, treadmill, *notes)))),
         time_s=time_s,
         com_m=com_m + way_m,
         heel_m=heel_m + way_m,

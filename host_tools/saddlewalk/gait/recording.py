@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from saddlewalk.errors import UserError
+from saddlewalk.printable import printable
 from saddlewalk.table import read_series
 
 LONGEST_S = 86400.0
@@ -62,7 +63,7 @@ def recording_of(source: str, cells: Iterable[Sequence[float]]) -> Recording:
     table[:, 1:][~(np.abs(table[:, 1:]) < ABSURD_M)] = np.nan
     markers = {point: table[:, 1 + 3 * i : 4 + 3 * i] for i, point in enumerate(POINTS)}
     return Recording(
-        source=Path(name).name,
+        source=printable(Path(name).name),
         time_s=table[:, 0],
         com_m=markers["com"],
         heel_m=np.stack([markers["lheel"], markers["rheel"]]),

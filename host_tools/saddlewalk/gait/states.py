@@ -12,6 +12,7 @@ from saddlewalk.gait.events import analyse
 from saddlewalk.gait.measures import implausible
 from saddlewalk.gait.motion_capture import READERS, Markers, load_walk
 from saddlewalk.gait.recording import COLUMNS, Recording, recording_of
+from saddlewalk.printable import printable
 from saddlewalk.recorded_states import STATE_COLUMNS, measurement_of
 from saddlewalk.table import read_any_series
 
@@ -36,7 +37,7 @@ def read_measurements(
     """
     if Path(source).suffix.lower() in READERS:
         recording = load_walk(source, markers)
-        if recording.source != Path(source).name:
+        if recording.source != printable(Path(source).name):
             note(recording.source)
         yield from _recorded(recording, note)
         return
