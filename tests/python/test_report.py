@@ -10,6 +10,7 @@ from pathlib import Path
 import lcm
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from saddlewalk.cli import main
 from saddlewalk.logs.messages import decode
@@ -209,6 +210,24 @@ def test_alarms_have_start_duration_level_and_reason(walk, tmp_path, unseen):
     ]
     assert page.short["times that the level was"] == "unstable 1, caution 1, unknown 0"
     assert ["unstable", "0.24", f"{3 / TICKS:.1%}"] in page.tables["level", "time (s)", "share"]
+
+
+def test_a_fall_has_its_time_on_the_page_and_in_the_pictures(walk, tmp_path, unseen, page):
+    assert "the wearer fell" not in page.short and "and did not fall." in page.text
+
+    def fall(tick, truth):
+        truth.fallen = tick >= 100
+
+    log = write_events(tmp_path / "log", changed(events_of(walk), "TRUTH", fall))
+    fallen = report(log, tmp_path / "a.html")
+    assert "was emulated (SADDLEWALK_TRUTH) and fell." in fallen.text
+    assert re.fullmatch(r"at 8\.\d\d s: scores, levels and .*", fallen.short["the wearer fell"])
+    (run,) = load_session(log).runs
+    assert run.fell_s == pytest.approx(100 * TICK_S, abs=0.001)
+    figure = Figure()
+    axes = figure.subplots()
+    pictures._finish_time(figure, run)
+    assert list(axes.lines[0].get_xdata()) == [run.fell_s, run.fell_s]
 
 
 def test_the_worst_alarms_of_a_long_run_are_shown_closely(walk, tmp_path, monkeypatch):

@@ -133,8 +133,13 @@ def _date(logged_us: int) -> str:
     return f"{date:%Y-%m-%d %H:%M:%S} UTC"
 
 
+_LYING = "scores, levels and steps from then on are of someone who lies on the ground"
+
+
 def _in_short(run: Run, way: Way | None) -> str:
     rows = [["duration", f"{run.duration_s:.2f} s"]]
+    if run.fell_s is not None:
+        rows.append(["the wearer fell", f"at {run.fell_s:.2f} s: {_LYING}"])
     if way:
         source = "measured" if way.measured else "planned"
         unknown = f"; not known during {way.unknown_s:.2f} s" if way.unknown_s else ""

@@ -240,6 +240,8 @@ def _finish_time(figure: Figure, run: Run) -> None:
     for axes in figure.axes:
         axes.set_xlim(0, run.duration_s)
         axes.grid(alpha=0.25)
+        if run.fell_s is not None:
+            axes.axvline(run.fell_s, color="black", lw=1.5, ls=":")
     figure.axes[-1].set(xlabel="time (s)")
 
 

@@ -145,6 +145,14 @@ class Run:
     utime_us: array  # of each tick
     numbers: array  # ticks', from 0 at the start of the firmware; NO_NUMBER: no message tells
     channels: dict[str, Channel]  # by name, as `plan`
+    falls: array  # ticks during which an emulated wearer fell
+
+    @property
+    def fell_s(self) -> float | None:
+        """When an emulated wearer fell, to a tick; None if none did."""
+        if not self.falls:
+            return None
+        return float(self.time_s[min(self.falls[0], self.ticks - 1)])
 
     @property
     def ticks(self) -> int:
@@ -286,6 +294,7 @@ class _Gathered:
         self.runs: list[Run] = []
         self.unreadable = Others()
         self.fell: bool | None = None
+        self._lies = False
         self._utime_us = 0
         self._tick: dict[str, bytes] = {}  # the messages of the tick at hand, by name
         self._number = -1  # the last in the run
@@ -301,7 +310,13 @@ class _Gathered:
                 self._utime_us = utime_us
             self._tick[kind.name] = data
         elif kind.name == "truth":
-            self.fell = bool(self.fell or kind.decode(data).fallen)
+            self._take_truth(bool(kind.decode(data).fallen))
+
+    def _take_truth(self, fallen: bool) -> None:
+        if fallen and not self._lies and self.runs:
+            self.runs[-1].falls.append(self.runs[-1].ticks)
+        self._lies = fallen
+        self.fell = self.fell or fallen
 
     def end_tick(self) -> None:
         """What came so far of a tick is all of it."""
@@ -312,7 +327,7 @@ class _Gathered:
         run = self.runs[-1] if self.runs else None
         again = number is not None and number <= self._number
         if run is None or again or self._utime_us <= run.utime_us[-1]:
-            run = Run(array("q"), array("i"), {})
+            run = Run(array("q"), array("i"), {}, array("I"))
             self.runs.append(run)
             self._number = -1
         self._number = self._number if number is None else number
