@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets samples neighbours format clean help
+.PHONY: build demo amalgamation controller test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets cross-compiler samples neighbours format clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -15,8 +15,13 @@ amalgamation: ## the core as one file to add to any build, build/saddlewalk.c
 	@mkdir -p build
 	@$(PYTHON) tools/amalgamate.py build/saddlewalk.c
 
-controller: build-cortex-m4f/build.ninja ## the image for saddlewalk demo --firmware qemu-m4
+controller: cross-compiler build-cortex-m4f/build.ninja ## the image for saddlewalk demo --firmware qemu-m4
 	@$(BIN)/ninja -C build-cortex-m4f --quiet saddlewalk-controller
+
+cross-compiler:
+	@echo | arm-none-eabi-gcc --specs=picolibc.specs -x c -E - >/dev/null 2>&1 || \
+		{ echo "saddlewalk: missing: a compiler and a C library for Cortex-M; as root:" \
+			"apt-get install -y gcc-arm-none-eabi picolibc-arm-none-eabi" >&2; exit 1; }
 
 test: build/build.ninja .venv/installed-test ## every test that this machine can run in minutes
 	$(call run_tests,build,release)

@@ -7,7 +7,9 @@ int main(void)
     const saddle_config_t config = saddle_config_default(1.79f, 63.3f); /* height m, mass kg */
     saddle_input_t input = {.command = {SADDLE_COMMAND_WALK, 1.2f, 0.17f}}; /* m/s, rad */
     input.measurement = saddle_no_measurement(); /* your sensors: output.verdict is of the wearer */
-    saddle_init(&walker, &config);
+    if (saddle_init(&walker, &config) != SADDLE_OK) {
+        return 1; /* the configuration, or a compiler flag that breaks the arithmetic */
+    }
     for (input.time_us = 0; input.time_us < 4000000; input.time_us += 80000) {
         saddle_output_t output;
         saddle_scores_t planned;

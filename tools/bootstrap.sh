@@ -29,7 +29,7 @@ may_install() {
     [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null
 }
 install() {
-    echo "saddlewalk: installing $1 by apt-get"
+    echo "saddlewalk: libglib-2.0 (for LCM) is missing: installing $1 by apt-get, as root"
     apt-get install -qq -y "$1" >/dev/null 2>&1 ||
         { apt-get update -qq && apt-get install -qq -y "$1"; } >/dev/null 2>&1
 }

@@ -3,6 +3,7 @@
 import graphlib
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -64,6 +65,46 @@ def test_a_missing_python_is_named(tmp_path):
     result = bootstrap("no-such-python", tmp_path / "venv")
     assert (result.returncode, result.stderr.count("\n")) == (1, 1)
     assert "no-such-python" in result.stderr
+
+
+@pytest.fixture
+def bare(tmp_path) -> Path:
+    """A folder of programs: a python without glib until apt-get has installed it, and `id`."""
+    programs = {
+        "python": f'case "$*" in *libglib*) test -e {tmp_path}/glib ;; esac',
+        "apt-get": f'echo "$*" >>{tmp_path}/installed; touch {tmp_path}/glib',
+        "id": "echo 0",
+    }
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    for name, script in programs.items():
+        (folder / name).write_text(f"#!/bin/sh\n{script}\n")
+        (folder / name).chmod(0o755)
+    return folder
+
+
+def test_glib_is_installed_for_root_who_is_told_in_one_line(bare, tmp_path):
+    result = bootstrap("python", tmp_path / "venv", PATH=f"{bare}:{os.environ['PATH']}")
+    assert (result.returncode, result.stderr) == (0, "")
+    assert result.stdout.count("\n") == 1 and "installing libglib2.0-0" in result.stdout
+    assert (tmp_path / "installed").read_text() == "install -qq -y libglib2.0-0\n"
+
+
+def test_glib_is_asked_for_of_anyone_else_in_one_line(bare, tmp_path):
+    (bare / "id").write_text("#!/bin/sh\necho 1000\n")
+    result = bootstrap("python", tmp_path / "venv", PATH=f"{bare}:{os.environ['PATH']}")
+    assert (result.returncode, result.stdout, result.stderr.count("\n")) == (1, "", 1)
+    assert "libglib-2.0 (for LCM); as root: apt-get install -y libglib2.0-0" in result.stderr
+    assert not (tmp_path / "installed").exists()
+
+
+def test_a_missing_cross_compiler_is_named_before_anything_is_configured(tmp_path):
+    make = [shutil.which("make"), "-C", paths.CHECKOUT, "controller"]
+    environment = {"PATH": str(tmp_path), "HOME": str(tmp_path)}
+    result = subprocess.run(make, env=environment, capture_output=True, text=True)
+    told = [line for line in result.stderr.splitlines() if not line.startswith("make")]
+    assert result.returncode == 2 and len(told) == 1
+    assert "apt-get install -y gcc-arm-none-eabi picolibc-arm-none-eabi" in told[0]
 
 
 def summary(*reports: Path, **environment: str) -> tuple[int, str]:
