@@ -134,7 +134,7 @@ def _check_file(named: _Named, output: OutputFile) -> None:
         return
     if path.is_dir():
         raise UserError(f"{named} is a folder: give a file")
-    if path.exists() and not os.access(path, os.W_OK):
+    if path.exists() and not os.access(path, os.W_OK, effective_ids=True):
         raise UserError(f"{named} is write-protected")
     if not device and own_descriptor(path) is None:
         _try(named, path.resolve().parent)
