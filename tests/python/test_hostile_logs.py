@@ -126,6 +126,12 @@ def test_reading_goes_on_after_damage(tmp_path, monkeypatch, block):
         assert f"the first is byte {len(encoded(SOME[1]))}" in damaged.broken
 
 
+def test_damage_at_the_start_costs_the_first_event(tmp_path):
+    log = tmp_path / "log"
+    log.write_bytes(b"x" + b"".join(map(encoded, SOME))[1:])
+    assert list(LcmLog(log)) == SOME[1:]
+
+
 def test_a_sync_word_within_data_is_data(tmp_path):
     events = [Event(1, "A", SYNC * 9), Event(2, "B", encoded(SOME[0])), Event(3, "C", b"")]
     log = LcmLog(write_log(tmp_path / "log", events))

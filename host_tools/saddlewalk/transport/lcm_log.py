@@ -18,6 +18,7 @@ SYNC = bytes.fromhex("eda1da01")
 CHANNEL_MAX = 63  # bytes, as LCM has it
 DATA_MAX = 1 << 20  # of a longer event the rest is skipped; no message of ours comes near
 BLOCK = 4 << 20
+START = 1 << 16
 _HEADER = struct.Struct(">4sQqII")
 
 
@@ -30,17 +31,20 @@ class Event(NamedTuple):
 
 
 def is_lcm_log(path: Path) -> bool:
-    """By its first bytes. Raises UserError for a file that is empty or cannot be read."""
+    """Whether an event may begin in its first bytes, of which some may be damaged.
+
+    Raises UserError for a file that is empty or cannot be read.
+    """
     try:
         if not stat.S_ISREG(path.stat().st_mode):
             raise UserError(f"{path} is not an ordinary file: give a log")
         with path.open("rb") as file:
-            start = file.read(len(SYNC))
+            start = file.read(START)
     except OSError as error:
         raise UserError(f"{path}: {error.strerror}") from error
     if not start:
         raise UserError(f"{path} is empty: give a log with something in it")
-    return start == SYNC
+    return SYNC in start
 
 
 class LcmLog:
