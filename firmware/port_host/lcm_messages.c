@@ -1,6 +1,7 @@
 #include "lcm_messages.h"
 
 #include <math.h>
+#include <saddlewalk_balance_t.h>
 #include <saddlewalk_bos_t.h>
 #include <saddlewalk_config_t.h>
 #include <saddlewalk_input_t.h>
@@ -58,10 +59,15 @@ static saddlewalk_plan_t plan_message(const saddle_plan_t *plan, int64_t utime_u
     return message;
 }
 
-/** A result, or NaN if its bit says that there is none. */
+/** A number that is known, or NaN. */
+static float known(bool is_known, float value)
+{
+    return is_known ? value : NAN;
+}
+
 static float result(const saddle_scores_t *scores, saddle_valid_t bit, float value)
 {
-    return (scores->valid & (uint32_t)bit) != 0u ? value : NAN;
+    return known((scores->valid & (uint32_t)bit) != 0u, value);
 }
 
 static saddlewalk_scores_t scores_message(const saddle_scores_t *scores, int64_t utime_us)
@@ -118,6 +124,28 @@ static saddlewalk_verdict_t verdict_message(const saddle_scores_t *scores,
     return message;
 }
 
+static saddlewalk_balance_t balance_message(const saddle_verdict_t *verdict,
+                                            const saddle_learned_walk_t *walk, int64_t utime_us)
+{
+    const bool measured = walk->height_m > 0.0f;
+    const bool stepped = walk->step_time_s > 0.0f;
+    return (saddlewalk_balance_t){
+        .utime_us = utime_us,
+        .driver = (int8_t)verdict->driver,
+        .margin = known(verdict->margin_known, verdict->margin),
+        .caution_below = known(verdict->margin_known, verdict->caution_below),
+        .recovery_margin_m = known(verdict->compared, verdict->recovery.margin_m),
+        .walk_velocity_m_s = {known(measured, walk->velocity_m_s.x),
+                              known(measured, walk->velocity_m_s.y)},
+        .walk_height_m = known(measured, walk->height_m),
+        .walk_ripple = known(walk->ripple > 0.0f, walk->ripple),
+        .walk_step_time_s = known(stepped, walk->step_time_s),
+        .walk_step_length_m = known(stepped, walk->step_length_m),
+        .walk_step_width_m = known(stepped, walk->step_width_m),
+        .walk_step_margin = known(stepped, walk->step_margin),
+    };
+}
+
 static saddlewalk_bos_t bos_message(const saddle_bos_t *bos, int64_t utime_us)
 {
     saddlewalk_bos_t message = {.utime_us = utime_us, .defined = bos->defined};
@@ -136,6 +164,7 @@ const char *saddle_lcm_channel(saddle_lcm_output_t part)
         [SADDLE_LCM_PLAN] = "SADDLEWALK_PLAN",
         [SADDLE_LCM_SCORES] = "SADDLEWALK_SCORES",
         [SADDLE_LCM_VERDICT] = "SADDLEWALK_VERDICT",
+        [SADDLE_LCM_BALANCE] = "SADDLEWALK_BALANCE",
         [SADDLE_LCM_BOS] = "SADDLEWALK_BOS",
     };
     return names[part];
@@ -157,6 +186,11 @@ int saddle_lcm_encode_output(saddle_lcm_output_t part, const saddle_output_t *ou
         const saddlewalk_verdict_t verdict =
             verdict_message(&output->scores, &output->verdict, utime_us);
         return saddlewalk_verdict_t_encode(bytes, 0, room, &verdict);
+    }
+    if (part == SADDLE_LCM_BALANCE) {
+        const saddlewalk_balance_t balance =
+            balance_message(&output->verdict, &output->walk, utime_us);
+        return saddlewalk_balance_t_encode(bytes, 0, room, &balance);
     }
     const saddlewalk_bos_t bos = bos_message(&output->scores.bos, utime_us);
     return saddlewalk_bos_t_encode(bytes, 0, room, &bos);

@@ -18,14 +18,15 @@ typedef enum {
     SADDLE_LCM_PLAN = 0,
     SADDLE_LCM_SCORES = 1,
     SADDLE_LCM_VERDICT = 2,
-    SADDLE_LCM_BOS = 3,
+    SADDLE_LCM_BALANCE = 3,
+    SADDLE_LCM_BOS = 4,
     SADDLE_LCM_OUTPUTS
 } saddle_lcm_output_t;
 
 /** The channel of a message of the output, such as SADDLEWALK_PLAN. */
 const char *saddle_lcm_channel(saddle_lcm_output_t part);
 
-/** plan_t, scores_t, verdict_t or bos_t. Returns the size in bytes. */
+/** plan_t, scores_t, verdict_t, balance_t or bos_t. Returns the size in bytes. */
 int saddle_lcm_encode_output(saddle_lcm_output_t part, const saddle_output_t *output,
                              int64_t utime_us, uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
 

@@ -18,7 +18,7 @@ from saddlewalk.transport.wire import Receiver, Sender
 WAIT_S = 5.0  # for what must come
 SILENCE_S = 0.1  # for what must not
 TICK_S = 0.08
-MESSAGES_PER_TICK = 21
+MESSAGES_PER_TICK = 25
 # For tests that command once and are about something else.
 COMMAND_HOLDS = "--set=command_max_age_s=3600"
 # A walk that comes to its speed within half a second.
@@ -111,7 +111,7 @@ class LcmNode:
     def __init__(self, url: str) -> None:
         self.lcm = open_lcm(url)
         self.latest = {}
-        channels = "SADDLEWALK_(INPUT|PLAN|SCORES|VERDICT|BOS|STATUS|HEALTH)"
+        channels = "SADDLEWALK_(INPUT|PLAN|SCORES|VERDICT|BALANCE|BOS|STATUS|HEALTH)"
         self.lcm.subscribe(channels, self._take).set_queue_capacity(1000)
 
     def _take(self, channel: str, data: bytes) -> None:

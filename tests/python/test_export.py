@@ -14,7 +14,7 @@ from saddlewalk.logs.messages import decode
 from saddlewalk.logs.tables import columns_of, element_names
 from saddlewalk.transport.lcm_log import LcmLog
 
-CHANNELS = {"bos", "config", "health", "input", "plan", "scores", "truth", "verdict"}
+CHANNELS = set("balance bos config health input plan scores status truth verdict".split())
 
 
 def export(walk: Path, form: str, out: Path) -> int:

@@ -255,7 +255,8 @@ def test_lcm_says_what_can_says():
             on_can["SCORES_MARGIN"]["MOS_COM"], abs=1.01 * half_step
         )
         assert_same_verdict(on_lcm["SADDLEWALK_VERDICT"], on_can)
-        assert len(on_lcm) == 7
+        assert_same_balance(on_lcm["SADDLEWALK_BALANCE"], on_can)
+        assert len(on_lcm) == 8
         assert {message.utime_us for message in on_lcm.values()} == {4 * 80000}
         assert (health.tick, health.measurement_age_us, health.frames_accepted) == (4, 0, 16)
         assert health.can_transport == health.TRANSPORT_UDP
@@ -308,12 +309,39 @@ def assert_same_verdict(verdict, on_can) -> None:
         assert said == pytest.approx(told, abs=0.51e-4, nan_ok=True)
 
 
+def assert_same_balance(balance, on_can) -> None:
+    margin, mean = on_can["BALANCE"], on_can["LEARNED_MEAN"]
+    step, steadiness = on_can["LEARNED_STEP"], on_can["LEARNED_STEADINESS"]
+    assert balance.driver == margin["DRIVER"]
+    assert balance.margin > balance.caution_below > 0 and balance.walk_height_m > 0.9
+    half_steps = {
+        0.5e-4: [
+            (balance.margin, margin["BALANCE_MARGIN"]),
+            (balance.caution_below, margin["CAUTION_BELOW"]),
+            (balance.recovery_margin_m, on_can["RECOVERY"]["MARGIN"]),
+            (balance.walk_height_m, mean["HEIGHT"]),
+            (balance.walk_step_length_m, step["LENGTH"]),
+            (balance.walk_step_width_m, step["WIDTH"]),
+            (balance.walk_ripple, steadiness["RIPPLE"]),
+            (balance.walk_step_margin, steadiness["STEP_MARGIN"]),
+        ],
+        1e-4: list(zip(balance.walk_velocity_m_s, (mean["VX"], mean["VY"]), strict=True)),
+        0.5e-3: [(balance.walk_step_time_s, step["TIME"])],
+    }
+    for half_step, pairs in half_steps.items():
+        for said, told in pairs:
+            assert said == pytest.approx(told, abs=1.01 * half_step, nan_ok=True)
+
+
 def test_the_verdict_by_lcm_has_no_numbers_where_there_are_none():
     url = own_lcm()
     with Host("--lcm", url, "--clock", "lockstep") as host:
         node = LcmNode(url)
         host.measure(STANDING | {"MEASURED_COM": {"HEIGHT": math.nan, "VX": 0.0, "VY": 0.0}})
-        on_can, verdict = host.tick(), node.take()["SADDLEWALK_VERDICT"]
+        on_can, on_lcm = host.tick(), node.take()
+        verdict, balance = on_lcm["SADDLEWALK_VERDICT"], on_lcm["SADDLEWALK_BALANCE"]
+        assert math.isnan(balance.margin) and balance.driver == 0
+        assert math.isnan(on_can["BALANCE"]["BALANCE_MARGIN"])
         assert (verdict.level, verdict.reason) == (verdict.LEVEL_UNKNOWN, verdict.REASON_INPUT)
         assert not verdict.compared
         numbers = [verdict.excess_stop_j, verdict.excess_track_j, verdict.recovery_margin_m]

@@ -16,6 +16,7 @@ from can.interfaces.udp_multicast.utils import pack_message
 
 from host_node import (
     COMMAND_HOLDS,
+    MESSAGES_PER_TICK,
     QUICK,
     SILENCE_S,
     STANDING,
@@ -268,7 +269,7 @@ def test_an_lcm_route_that_is_lost_and_comes_back():
         node.take()
         unroute()
         ticks = [host.tick() for _ in range(5)]
-        assert all(len(tick) == 21 for tick in ticks)
+        assert all(len(tick) == MESSAGES_PER_TICK for tick in ticks)
         assert node.take(SILENCE_S) == {}
         route()
         node.command(0, 0.0)
@@ -365,4 +366,4 @@ def test_an_interface_that_is_named_is_said_to_leave_this_machine():
         assert describe(host.bus) == f"UDP {spec[4:]} on d0: leaves this machine"
         assert f"CAN UDP {spec[4:]}@d0, which leaves this machine; " in host.first_line
         assert "; commands: anyone on the network (CAN over UDP); " in host.first_line
-        assert len(host.tick()) == 21
+        assert len(host.tick()) == MESSAGES_PER_TICK

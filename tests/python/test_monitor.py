@@ -75,7 +75,7 @@ def status() -> status_t:
     message.can_transport, message.can_link = status_t.TRANSPORT_UDP, status_t.LINK_UP
     message.lcm_link, message.lcm_losses = status_t.LINK_DOWN, 2
     message.frames_accepted, message.frames_bad_version, message.other_version = 900, 5, 3
-    message.frames_no_room, message.wire_version = 7, 4
+    message.frames_no_room, message.wire_version = 7, 5
     return message
 
 
@@ -101,7 +101,7 @@ SHOWN += ["right foot 0.70 m ahead and 0.15 m to the right of the left one, 0.21
 
 SHOWN += ["every 80.0 ms", "latency 0.13 ms (99% below 0.256 ms, worst 1.90 ms)"]
 SHOWN += ["commands from LCM 40 ms ago", "CoM 8 ms ago", "right foot never"]
-SHOWN += ["wire version 3 refused, this firmware has 4", "CAN by UDP up", "LCM DOWN (lost 2 times)"]
+SHOWN += ["wire version 3 refused, this firmware has 5", "CAN by UDP up", "LCM DOWN (lost 2 times)"]
 SHOWN += ["dropped 7 frames without room"]
 
 

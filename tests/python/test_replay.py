@@ -29,20 +29,20 @@ from saddlewalk.gait.playback import (
 from saddlewalk.paths import CHECKOUT
 from saddlewalk.recorded_states import STATE_COLUMNS
 from saddlewalk.table import format_cell
-from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages
+from saddlewalk.ticks import LEARNED_MESSAGES, PLAN_MESSAGES, TICK_S, Messages
 from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.wire import Receiver, Sender
 from synthetic_walk import Walk, csv_text
 
 HEIGHT_M, MASS_KG = 1.79, 63.3
 DATABASE = cantools.database.load_file(CHECKOUT / "firmware/wire/saddlewalk.dbc")
-NO_PLAN = {
+NO_PLAN_NOR_LEARNED_WALK = {
     name: {
         signal.name: 0.0
         for signal in DATABASE.get_message_by_name(name).signals
         if signal.name not in ("CRC", "COUNTER")
     }
-    for name in PLAN_MESSAGES
+    for name in (*PLAN_MESSAGES, *LEARNED_MESSAGES)
 }
 
 
@@ -109,7 +109,7 @@ class OfflineFirmware:
         infeasible = output.faults & core.SADDLE_FAULT_SPEED_INFEASIBLE
         stop = core.SADDLE_VALID_STOP
         return {
-            **NO_PLAN,
+            **NO_PLAN_NOR_LEARNED_WALK,
             **judgement(output.verdict),
             "SCORES_ENERGY": {
                 "CAN_STOP": scores.can_stop,
@@ -158,6 +158,11 @@ def judgement(verdict) -> Messages:
             "REASON": verdict.reason,
             "XCOM_DEVIATION_X": compared(deviation_m.x),
             "XCOM_DEVIATION_Y": compared(deviation_m.y),
+        },
+        "BALANCE": {
+            "DRIVER": verdict.driver,
+            "BALANCE_MARGIN": verdict.margin if verdict.margin_known else math.nan,
+            "CAUTION_BELOW": verdict.caution_below if verdict.margin_known else math.nan,
         },
         "RECOVERY": {
             "FOUND": recovery.found,

@@ -321,7 +321,7 @@ def test_without_inputs_steps_are_the_plans(walk, tmp_path):
 def test_with_scores_alone_there_still_is_a_page(walk, tmp_path):
     events = [e for e in events_of(walk) if e.channel == "SADDLEWALK_SCORES"]
     page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
-    assert page.text.count("Nothing that can be read came on") == 6
+    assert page.text.count("Nothing that can be read came on") == 7
     assert page.short["steps, distance, speed"] == "not known"
     assert "Neither measured feet nor a plan was logged." in page.text
 

@@ -19,8 +19,8 @@ from saddlewalk.transport.bus import private_udp
 from saddlewalk.transport.lcm_log import LcmLog
 
 TICKS = 163  # of 13 s
-OUTPUTS = TICKS * 5
-FRAMES = TICKS * 18
+OUTPUTS = TICKS * 6
+FRAMES = TICKS * 22
 
 
 def rerun(log: Path, capsys, *options: str) -> tuple[int, str, str]:
@@ -75,6 +75,8 @@ def test_a_run_in_real_time_is_equal_too(tmp_path, capsys):
         ("PLAN", 17, "SADDLEWALK_PLAN mode: recorded 0, recomputed 1"),
         ("SCORES", -1, "SADDLEWALK_SCORES xcom_m[1]: recorded"),
         ("VERDICT", 16, "SADDLEWALK_VERDICT level: recorded"),
+        ("BALANCE", 16, "SADDLEWALK_BALANCE driver: recorded"),
+        ("BALANCE", -1, "SADDLEWALK_BALANCE walk_step_margin: recorded"),
         ("BOS", -1, "SADDLEWALK_BOS y_m[15]: recorded"),
         ("HEALTH", 20, "SADDLEWALK_HEALTH status: recorded 1, recomputed 0"),
         ("PLAN", 0, "SADDLEWALK_PLAN: recorded 156 bytes of no such type"),
@@ -207,6 +209,20 @@ def test_lost_outputs_are_told_and_the_others_compared(walk, tmp_path, capsys):
     assert f"SADDLEWALK_BOS of {TICKS} ticks is not in the log, the first time of tick 0" in told
 
 
+def test_a_log_of_before_a_channel_is_whole(walk, tmp_path, capsys):
+    """None of it at all; where some of it is, what lacks was lost."""
+    events = events_of(walk)
+    there = [i for i, event in enumerate(events) if event.channel == "SADDLEWALK_BALANCE"]
+    older = [event for event in events if event.channel != "SADDLEWALK_BALANCE"]
+    status, told, _ = rerun(write_events(tmp_path / "older", older), capsys)
+    assert status == 0 and f"all {TICKS * 5} recorded outputs are equal" in told
+    assert "SADDLEWALK_BALANCE is not in the log, nor compared" in told
+    del events[there[3]]
+    status, told, _ = rerun(write_events(tmp_path / "lost", events), capsys)
+    assert status == 1
+    assert "SADDLEWALK_BALANCE of 1 ticks is not in the log, the first time of tick 3" in told
+
+
 def test_a_log_without_inputs_says_so(walk, tmp_path, capsys):
     events = [e for e in events_of(walk) if e.channel != "SADDLEWALK_INPUT"]
     status, _, told = rerun(write_events(tmp_path / "log", events), capsys)
@@ -282,16 +298,16 @@ def test_a_can_log_with_another_body_differs(walk, capsys):
 
 def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
     frames = frames_of(walk)
-    log = can_log(tmp_path / "mid.log", frames[25 * 5 :])
+    log = can_log(tmp_path / "mid.log", frames[29 * 5 :])
     status, _, told = rerun(log, capsys)
     assert (status, told.count("\n")) == (2, 1) and "the log begins in mid-run" in told
     answered = [i for i, frame in enumerate(frames) if frame.arbitration_id == 0x140]
     status, told, _ = rerun(
-        can_log(tmp_path / "lost.log", frames[: answered[9] - 20] + frames[answered[9] + 1 :]),
+        can_log(tmp_path / "lost.log", frames[: answered[9] - 24] + frames[answered[9] + 1 :]),
         capsys,
     )
     assert status == 1 and "9 ticks computed" in told and "2 sets of measurements came" in told
-    log = can_log(tmp_path / "frame.log", frames[: answered[9] - 4] + frames[answered[9] - 3 :])
+    log = can_log(tmp_path / "frame.log", frames[: answered[9] - 8] + frames[answered[9] - 7 :])
     status, told, _ = rerun(log, capsys)
     assert status == 1 and "RECOVERY of 1 ticks is not in the log, the first time of tick 9" in told
 

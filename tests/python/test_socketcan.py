@@ -190,7 +190,7 @@ def test_a_full_queue_costs_frames_but_no_tick():
     with Host("--lcm=none", spec=CLASSIC) as host:
         host.tick()
         begun_s = time.monotonic()
-        # 100 bytes a second and room for ten frames, where 21 frames of 16 bytes come in 80 ms.
+        # 100 bytes a second and room for ten frames, where 25 frames of 16 bytes come in 80 ms.
         run("tc qdisc add dev vcan0 root tbf rate 800bit burst 100 limit 160")
         try:
             discard(host.bus)

@@ -7,7 +7,7 @@ import can
 import pytest
 
 from saddlewalk.emulation.exoskeleton import plan_of
-from saddlewalk.ticks import TickReader, next_tick
+from saddlewalk.ticks import MESSAGES, TickReader, next_tick
 from saddlewalk.transport.wire import Sender
 
 
@@ -55,6 +55,10 @@ def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
             "XCOM_DEVIATION_Y": 0.0,
         },
         "RECOVERY": {"FOUND": 1, "STOPS": 0, "FOOT": 1, "X": 0.7, "Y": -0.1, "MARGIN": 0.2},
+        "BALANCE": {"DRIVER": 12, "BALANCE_MARGIN": 0.3, "CAUTION_BELOW": 0.1},
+        "LEARNED_MEAN": {"VX": 1.2, "VY": 0.0, "HEIGHT": 1.0},
+        "LEARNED_STEP": {"TIME": 0.56, "LENGTH": 0.67, "WIDTH": 0.15},
+        "LEARNED_STEADINESS": {"RIPPLE": 0.03, "STEP_MARGIN": 0.25},
         "TIMING": {"PERIOD": 0.08, "LATENCY": 1e-4, "LATENCY_MAX": 3e-4},
         "RECEIVED": {
             "MALFORMED": 0,
@@ -75,11 +79,13 @@ def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
     return [sender.frame(name, **signals) for name, signals in values.items()]
 
 
-@pytest.mark.parametrize("lost", range(21))
+@pytest.mark.parametrize("lost", range(len(MESSAGES)))
 def test_a_tick_with_a_lost_frame_is_not_used(lost):
     sender, reader = Sender(), TickReader()
     first, second, third = (tick_frames(sender) for _ in range(3))
-    assert [reader.feed(frame) is not None for frame in first] == [False] * 20 + [True]
+    assert [reader.feed(frame) is not None for frame in first] == [False] * (len(MESSAGES) - 1) + [
+        True
+    ]
     assert not any(reader.feed(frame) for frame in second[:lost] + second[lost + 1 :])
     heard = [reader.feed(frame) for frame in third]
     assert plan_of(heard[-1]).speed_m_s == pytest.approx(1.2) and not any(heard[:-1])
@@ -119,6 +125,5 @@ def test_a_tick_that_waits_is_taken_even_when_time_is_up():
             return next(frames, None)
 
     bus, reader = Waiting(), TickReader()
-    assert [next_tick(bus, reader.feed, -1.0) is not None for _ in range(21)] == [False] * 20 + [
-        True
-    ]
+    heard = [next_tick(bus, reader.feed, -1.0) is not None for _ in MESSAGES]
+    assert heard == [False] * (len(MESSAGES) - 1) + [True]

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from cffi import FFI
 
-from saddlewalk import paths
+from saddlewalk import paths, ticks
 from saddlewalk.transport import wire
 
 SEED = 20261122
-OUTPUTS = 1000  # of 21 frames
+OUTPUTS = 1000  # of 25 frames
 INPUTS = 3000  # of 4 frames
 
 NUMBERS = {
@@ -73,6 +73,18 @@ NUMBERS = {
         "Y": "verdict.recovery.landing_m.y",
         "MARGIN": "verdict.recovery.margin_m",
     },
+    "BALANCE": {"BALANCE_MARGIN": "verdict.margin", "CAUTION_BELOW": "verdict.caution_below"},
+    "LEARNED_MEAN": {
+        "VX": "walk.velocity_m_s.x",
+        "VY": "walk.velocity_m_s.y",
+        "HEIGHT": "walk.height_m",
+    },
+    "LEARNED_STEP": {
+        "TIME": "walk.step_time_s",
+        "LENGTH": "walk.step_length_m",
+        "WIDTH": "walk.step_width_m",
+    },
+    "LEARNED_STEADINESS": {"RIPPLE": "walk.ripple", "STEP_MARGIN": "walk.step_margin"},
     "TIMING": {},
     "RECEIVED": {},
     "INPUTS": {},
@@ -88,6 +100,19 @@ VALID_BIT = {
     "GRAVITY_X": "SADDLE_VALID_GRAVITY",
     "GRAVITY_Y": "SADDLE_VALID_GRAVITY",
     "EXCESS_STOP": "SADDLE_VALID_STOP",
+}
+# Fields that are known while another one, of the same output, is above 0.
+KNOWN_BY = {
+    "verdict.margin": "verdict.margin_known",
+    "verdict.caution_below": "verdict.margin_known",
+    **dict.fromkeys(
+        ("walk.velocity_m_s.x", "walk.velocity_m_s.y", "walk.height_m"), "walk.height_m"
+    ),
+    **dict.fromkeys(
+        ("walk.step_time_s", "walk.step_length_m", "walk.step_width_m", "walk.step_margin"),
+        "walk.step_time_s",
+    ),
+    "walk.ripple": "walk.ripple",
 }
 MEASURED = {
     "MEASURED_COM": {
@@ -195,6 +220,8 @@ def is_known(codec, output, signal: str, field: str) -> bool:
     """Whether the output holds that number at all."""
     if field.startswith("plan."):
         return output.plan.valid
+    if field in KNOWN_BY:
+        return get(output, KNOWN_BY[field]) > 0
     if signal in VALID_BIT:
         return bool(output.scores.valid & getattr(codec, VALID_BIT[signal]))
     found = output.verdict.recovery.found or "landing" not in field
@@ -213,7 +240,8 @@ def random_states(rng: random.Random):
     plan.step_count = rng.randrange(2**32)
     scores.valid = rng.randrange(128)
     scores.can_stop, scores.paper_stable = rng.randrange(2), rng.randrange(2)
-    verdict.level, verdict.reason = rng.randrange(4), rng.randrange(12)
+    verdict.level, verdict.reason = rng.randrange(4), rng.randrange(17)
+    verdict.driver, verdict.margin_known = rng.randrange(17), rng.random() < 0.8
     verdict.compared, verdict.on_track = rng.random() < 0.8, rng.randrange(2)
     recovery = verdict.recovery
     recovery.found, recovery.stops, recovery.foot = (rng.randrange(2) for _ in range(3))
@@ -228,10 +256,12 @@ def random_output(codec, rng: random.Random):
     for message, signals in NUMBERS.items():
         said[message] = {}
         for signal, field in signals.items():
-            value = any_number(rng, scale_of(message, signal))
-            put(output, field, value)
-            known = is_known(codec, output, signal, field)
-            said[message][signal] = value if known else math.nan
+            said[message][signal] = any_number(rng, scale_of(message, signal))
+            put(output, field, said[message][signal])
+    for message, signals in NUMBERS.items():
+        for signal, field in signals.items():
+            if not is_known(codec, output, signal, field):
+                said[message][signal] = math.nan
     said["PLAN_STEP"] |= {"VALID": plan.valid, "SUPPORT": plan.support, "PHASE": plan.phase}
     said["PLAN_STEP"]["STEP_COUNT"] = plan.step_count % 65536
     said["PLAN_EVENTS"]["MODE"] = plan.mode
@@ -240,6 +270,7 @@ def random_output(codec, rng: random.Random):
     said["SCORES_ENERGY"]["PAPER_STABLE"] = scores.paper_stable
     said["VERDICT"] |= {"LEVEL": verdict.level, "REASON": verdict.reason}
     said["VERDICT"]["COMPARED"] = verdict.compared
+    said["BALANCE"]["DRIVER"] = verdict.driver
     recovery = verdict.recovery
     said["RECOVERY"] |= {"FOUND": recovery.found, "STOPS": recovery.stops, "FOOT": recovery.foot}
     said["HEALTH"] = {"STATUS": output.status, "LIMITS": output.limits}
@@ -285,6 +316,13 @@ def test_output_from_c_to_python(codec):
                 else:
                     assert received[signal] == values[signal], signal
     assert receiver.accepted == OUTPUTS * len(NUMBERS)
+
+
+def test_a_tick_has_as_many_messages_here_as_there(codec):
+    header = paths.CHECKOUT / "firmware/wire/include/saddlewalk/wire.h"
+    (frames,) = re.findall(r"#define SADDLE_WIRE_OUTPUT_FRAMES (\d+)u", header.read_text())
+    assert int(frames) == len(ticks.MESSAGES) == len(NUMBERS)
+    assert NUMBERS.keys() == ticks.MESSAGES
 
 
 def random_measurement(rng: random.Random):

@@ -248,6 +248,56 @@ static void test_what_was_not_compared_has_no_numbers(void)
     assert_judgement(&output, no_step_no_stop);
 }
 
+static void assert_balance(const saddle_output_t *output, const uint8_t expected[4][7])
+{
+    const saddle_wire_health_t health = {.late_ticks = 0};
+    saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
+    saddle_wire_encode_output(output, &health, 7, frames);
+    for (size_t i = 0; i < 4u; ++i) {
+        TEST_ASSERT_EQUAL_HEX16(0x137u + i, frames[17u + i].id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[17u + i].data[1], 7);
+    }
+}
+
+/** Written out by hand from the DBC: driver 16, then -250 and 1000 (1e-4); 6000, -50 (0.2 mm/s) and
+ *  10000 (0.1 mm); 560 ms, 6500 and 1500 (0.1 mm); 350 and 2500 (1e-4). */
+static void test_balance_bytes(void)
+{
+    const uint8_t expected[4][7] = {{0x07, 0x10, 0x00, 0x06, 0xFF, 0xE8, 0x03},
+                                    {0x07, 0x70, 0x17, 0xCE, 0xFF, 0x10, 0x27},
+                                    {0x07, 0x30, 0x02, 0x64, 0x19, 0xDC, 0x05},
+                                    {0x07, 0x5E, 0x01, 0xC4, 0x09, 0x00, 0x00}};
+    const saddle_output_t output = {.verdict = {.driver = SADDLE_REASON_SINKING,
+                                                .margin_known = true,
+                                                .margin = -0.025f,
+                                                .caution_below = 0.1f},
+                                    .walk = {.velocity_m_s = {1.2f, -0.01f},
+                                             .height_m = 1.0f,
+                                             .ripple = 0.035f,
+                                             .step_time_s = 0.56f,
+                                             .step_length_m = 0.65f,
+                                             .step_width_m = 0.15f,
+                                             .step_margin = 0.25f}};
+    assert_balance(&output, expected);
+}
+
+/** Each part has a sign of its own that it is known: margin_known, a height, a step time, a ripple. */
+static void test_what_was_not_learned_has_no_numbers(void)
+{
+    const uint8_t nothing[4][7] = {{0x07, 0x00, 0x00, 0x00, 0x80, 0x00, 0x80},
+                                   {0x07, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80},
+                                   {0x07, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80},
+                                   {0x07, 0x00, 0x80, 0x00, 0x80, 0x00, 0x00}};
+    const uint8_t no_step[4][7] = {{0x07, 0x00, 0x00, 0x00, 0x80, 0x00, 0x80},
+                                   {0x07, 0x00, 0x00, 0x00, 0x00, 0x10, 0x27},
+                                   {0x07, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80},
+                                   {0x07, 0x5E, 0x01, 0x00, 0x80, 0x00, 0x00}};
+    saddle_output_t output = {.status = SADDLE_ERROR_TIME};
+    assert_balance(&output, nothing);
+    output.walk = (saddle_learned_walk_t){.height_m = 1.0f, .ripple = 0.035f};
+    assert_balance(&output, no_step);
+}
+
 /** Written out by hand from the DBC: 80.25 ms, 0.13 ms and the end of the range; counts that saturate
  *  beside one that wraps; LCM, then 80, 7, 4095 and 0 ms in 12 bits each; status and limits 0. */
 static void test_process_bytes(void)
@@ -273,8 +323,8 @@ static void test_process_bytes(void)
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_wire_encode_output(&output, &health, 7, frames);
     for (size_t i = 0; i < 4u; ++i) {
-        TEST_ASSERT_EQUAL_HEX16(0x13Du + i, frames[17u + i].id);
-        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[17u + i].data[1], 7);
+        TEST_ASSERT_EQUAL_HEX16(0x13Du + i, frames[21u + i].id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[21u + i].data[1], 7);
     }
 }
 
@@ -338,6 +388,8 @@ int main(void)
     RUN_TEST(test_a_plan_that_is_not_valid_has_no_numbers);
     RUN_TEST(test_judgement_bytes);
     RUN_TEST(test_what_was_not_compared_has_no_numbers);
+    RUN_TEST(test_balance_bytes);
+    RUN_TEST(test_what_was_not_learned_has_no_numbers);
     RUN_TEST(test_process_bytes);
     RUN_TEST(test_before_a_session_no_code_is_good);
     RUN_TEST(test_when_a_session_is_over);

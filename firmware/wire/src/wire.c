@@ -386,6 +386,33 @@ static void encode_verdict(const saddle_verdict_t *verdict, uint8_t counter,
            .margin = RAW(recovery_margin, compared, recovery->margin_m));
 }
 
+static void encode_balance(const saddle_verdict_t *verdict, uint8_t counter,
+                           saddle_frame_t *frame)
+{
+    const bool known = verdict->margin_known;
+    ENCODE(frame, balance, BALANCE, .counter = counter, .driver = verdict->driver,
+           .balance_margin = RAW(balance_balance_margin, known, verdict->margin),
+           .caution_below = RAW(balance_caution_below, known, verdict->caution_below));
+}
+
+static void encode_learned_walk(const saddle_learned_walk_t *walk, uint8_t counter,
+                                saddle_frame_t *frames)
+{
+    const bool measured = walk->height_m > 0.0f;
+    const bool stepped = walk->step_time_s > 0.0f;
+    ENCODE(&frames[0], learned_mean, LEARNED_MEAN, .counter = counter,
+           .vx = RAW(learned_mean_vx, measured, walk->velocity_m_s.x),
+           .vy = RAW(learned_mean_vy, measured, walk->velocity_m_s.y),
+           .height = RAW(learned_mean_height, measured, walk->height_m));
+    ENCODE(&frames[1], learned_step, LEARNED_STEP, .counter = counter,
+           .time = RAW(learned_step_time, stepped, walk->step_time_s),
+           .length = RAW(learned_step_length, stepped, walk->step_length_m),
+           .width = RAW(learned_step_width, stepped, walk->step_width_m));
+    ENCODE(&frames[2], learned_steadiness, LEARNED_STEADINESS, .counter = counter,
+           .ripple = RAW(learned_steadiness_ripple, walk->ripple > 0.0f, walk->ripple),
+           .step_margin = RAW(learned_steadiness_step_margin, stepped, walk->step_margin));
+}
+
 static void encode_process(const saddle_wire_health_t *health, uint8_t counter,
                            saddle_frame_t *frames)
 {
@@ -426,8 +453,10 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
     encode_scores(&output->scores, output->faults, counter, &frames[10]);
     encode_foresight(&output->scores, &output->verdict, counter, &frames[13]);
     encode_verdict(&output->verdict, counter, &frames[15]);
-    encode_process(health, counter, &frames[17]);
-    encode_health(output, health, counter, &frames[20]);
+    encode_balance(&output->verdict, counter, &frames[17]);
+    encode_learned_walk(&output->walk, counter, &frames[18]);
+    encode_process(health, counter, &frames[21]);
+    encode_health(output, health, counter, &frames[24]);
 }
 
 void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,

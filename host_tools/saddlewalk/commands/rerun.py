@@ -75,6 +75,7 @@ def told(report: "Report") -> list[str]:
             f"{report.different_ticks} of {report.ticks} ticks differ from what was recorded",
         ]
     lines += [f"not compared: {gap}" for gap in report.not_compared]
+    lines += [f"{channel} is not in the log, nor compared" for channel in report.not_logged]
     if report.sound:
         lines.append(f"all {report.compared} recorded outputs are equal, bit for bit")
     return lines

@@ -20,6 +20,8 @@ from saddlewalk.ticks import TICK_S
 from saddlewalk.transport.lcm_log import Event
 
 GAPS_MAX = 20  # told one by one
+# Channels that firmware before them did not have: a log without any of it is whole all the same.
+ADDED_CHANNELS = {"SADDLEWALK_BALANCE"}
 HEALTH_FIELDS = ("tick", "status", "limits", "faults")  # the core's; the others are the host's
 _PACKED = {"float": ">f", "double": ">d", "int8_t": ">b", "int32_t": ">i", "int64_t": ">q"}
 
@@ -53,6 +55,7 @@ class Report:
     gaps: list[str] = field(default_factory=list)  # the first of them
     further_gaps: int = 0
     missing: dict[str, "Missing"] = field(default_factory=dict)  # by the output's name
+    not_logged: list[str] = field(default_factory=list)  # of ADDED_CHANNELS
 
     @property
     def not_compared(self) -> list[str]:
@@ -109,6 +112,7 @@ def rerun_lcm(events: Iterable[Event]) -> Report:
     for tick in logged_ticks(events):
         rerun.take(tick)
     rerun.end_run()
+    rerun.forgive_added_channels()
     if not rerun.report.ticks:
         raise UserError(
             rerun.report.gaps[0]
@@ -180,6 +184,13 @@ class _LcmRerun:
                 f"{self._why}: ticks {self._first_unknown} to {self._last} cannot be computed"
             )
         self._why, self._firmware, self._last = "", None, None
+
+    def forgive_added_channels(self) -> None:
+        """What came with no tick at all was not published."""
+        for channel in ADDED_CHANNELS & self.report.missing.keys():
+            if self.report.missing[channel].ticks == self.report.ticks:
+                del self.report.missing[channel]
+                self.report.not_logged.append(channel)
 
     def _begin_run(self, tick: LoggedTick) -> None:
         self.end_run()

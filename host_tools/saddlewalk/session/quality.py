@@ -19,6 +19,7 @@ AGES = {
 }
 LACKS = {
     "verdict": "levels, alarms, energies and the recovery step are not known",
+    "balance": "the margin that decides the level, and what drives it, is not known",
     "scores": "S_pend, S_jump, S_SW and the margins are not known",
     "plan": "the planned speed is not known, nor which steps were steady",
     "input": "what was measured, and how old it was, is not known",

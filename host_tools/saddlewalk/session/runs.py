@@ -20,7 +20,7 @@ from saddlewalk.ticks import TICK_S
 from saddlewalk.transport.lcm_log import LcmLog
 from saddlewalk.verdict import reason_words
 
-FIRMWARE = tuple("config input plan scores verdict bos health status".split())
+FIRMWARE = tuple("config input plan scores verdict balance bos health status".split())
 NUMBERED = ("health", "status", "input")  # messages that tell their tick's number
 NO_NUMBER = -(2**31)
 RUNS_MAX = 20  # more are two firmware processes that were logged at once

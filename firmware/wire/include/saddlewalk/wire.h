@@ -2,7 +2,8 @@
  * Saddlewalk on CAN: bytes to structs and back. Knows no bus, clock, heap or global.
  *
  * saddlewalk.dbc is the only source of identifiers, positions and scales; the code that cantools
- * writes from it does the packing. This layer adds what a DBC cannot say:
+ * writes from it does the packing. Its VERSION is SADDLE_WIRE_VERSION, one more with every change of
+ * the bits or of their meaning: a COMMAND of another version is refused. This layer adds what a DBC cannot say:
  *
  *     byte 0      CRC-8 SAE J1850 over the identifier, low byte first, then bytes 1 to 7
  *     byte 1      low 4 bits: alive counter, one more (modulo 16) each time the message is sent
@@ -39,9 +40,10 @@ extern "C" {
 /** Every frame is a classic CAN data frame of this many bytes with an 11-bit identifier. */
 #define SADDLE_WIRE_LENGTH 8u
 
-/** Frames of one output: the plan (10), the scores (5), the verdict (2), the process (3), and
- *  HEALTH as the last. SESSION is apart: it is sent only while codes are demanded. */
-#define SADDLE_WIRE_OUTPUT_FRAMES 21u
+/** Frames of one output: the plan (10), the scores (5), the verdict (2), the margin and the learned
+ *  walk (4), the process (3), and HEALTH as the last. SESSION is apart: it is sent only while codes
+ *  are demanded. */
+#define SADDLE_WIRE_OUTPUT_FRAMES 25u
 
 /** Frames of one measurement: CoM, left foot, right foot. */
 #define SADDLE_WIRE_MEASURED_FRAMES 3u
