@@ -9,7 +9,7 @@
 # headers, and only the folders of NAME and USES are on the include path. USES is not transitive, and
 # a layer must be declared before it is used: arrows point down.
 #
-# The layers' objects are collected in the global property SADDLE_CORE_OBJECTS, the public headers in
+# The layers' objects are collected in the global property SADDLE_LAYER_OBJECTS, the public headers in
 # SADDLE_CORE_HEADERS, and the layers' names, from the lowest up, in SADDLE_CORE_LAYERS.
 include_guard(GLOBAL)
 include(${CMAKE_CURRENT_LIST_DIR}/SaddleStrict.cmake)
@@ -49,7 +49,8 @@ function(saddle_layer name)
     endif()
     string(REPLACE "/" "_" target saddle_layer_${name})
     add_library(${target} OBJECT src/${name}.c)
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    set_target_properties(${target} PROPERTIES
+        POSITION_INDEPENDENT_CODE ON EXCLUDE_FROM_ALL ON)
     target_link_libraries(${target} PRIVATE saddle_strict saddle_same_bits)
     foreach(used IN LISTS LAYER_USES)
         string(REPLACE "/" "_" view saddle_view_${used})
@@ -58,5 +59,5 @@ function(saddle_layer name)
         endif()
         target_link_libraries(${target} PRIVATE ${view})
     endforeach()
-    set_property(GLOBAL APPEND PROPERTY SADDLE_CORE_OBJECTS $<TARGET_OBJECTS:${target}>)
+    set_property(GLOBAL APPEND PROPERTY SADDLE_LAYER_OBJECTS $<TARGET_OBJECTS:${target}>)
 endfunction()

@@ -1,6 +1,6 @@
 """The core's compile flags took effect: same bits everywhere, and each layer sees only its own.
 
-usage: check_flags.py COMPILE_COMMANDS_JSON CORE_SOURCE_FOLDER
+usage: check_flags.py COMPILE_COMMANDS_JSON CORE_SOURCE_FOLDER ONE_FILE
 """
 
 import json
@@ -22,12 +22,16 @@ def main() -> None:
     commands = {
         Path(entry["file"]).resolve(): set(shlex.split(entry["command"]))
         for entry in json.loads(Path(sys.argv[1]).read_text())
-        if "saddle_layer_" in entry["command"]  # tests compile the sources in ways of their own
+        # tests compile the sources in ways of their own
+        if "saddle_layer_" in entry["command"] or "saddle_one_file" in entry["command"]
     }
     sources = sorted(Path(sys.argv[2]).resolve().rglob("*.c"))
     if not sources:
         sys.exit(f"{sys.argv[2]} has no sources")
     found = [f"{file.name} {what}" for file in sources for what in complaints(commands[file])]
+    one_file = commands[Path(sys.argv[3]).resolve()]
+    found += [f"the one file lacks {flag}" for flag in sorted(REQUIRED - one_file)]
+    found += [f"the one file has {flag}" for flag in sorted(FORBIDDEN & one_file)]
     sys.exit("\n".join(found) or None)
 
 

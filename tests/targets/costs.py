@@ -27,20 +27,13 @@ WIRE = "accept decode_command decode_measured encode_output".split()
 COUNTED = [
     "saddle_init",
     "saddle_plan_at",
-    "saddle_planner_update",
-    "saddle_planner_write",
-    "saddle_supervisor_update",
     "saddle_tick",
     "saddle_wire_accept",
     "saddle_wire_decode_command",
     "saddle_wire_decode_measured",
     "saddle_wire_encode_output",
 ]
-PARTS = {
-    "planner": {"saddle_planner_update", "saddle_planner_write"},
-    "supervisor": {"saddle_supervisor_update"},
-    "receive": {"saddle_wire_accept", "saddle_wire_decode_command", "saddle_wire_decode_measured"},
-}
+RECEIVE = {"saddle_wire_accept", "saddle_wire_decode_command", "saddle_wire_decode_measured"}
 MODES = ["standing", "starting", "walking", "stopping"]
 LEVEL_NAMES = ["unknown", "stable", "caution", "unstable"]
 MEDIAN = 1  # in the rows of by_kind()
@@ -121,26 +114,23 @@ def run_benchmark(tools: Tools, level: str, disassembly: str) -> tuple[list[str]
 
 
 def instructions(calls: list[str]) -> dict[str, list[int]]:
-    """Counts of each whole and part, one for each tick."""
+    """Counts of each call; what is received, summed up between two ticks."""
     counts: dict[str, list[int]] = {
-        name: [] for name in ["init", "tick", "planner", "supervisor", "receive", "encode"]
+        name: [] for name in ["init", "plan_at", "tick", "receive", "encode"]
     }
-    part = dict.fromkeys(PARTS, 0)
+    received = 0
     for line in calls:
         index, count = map(int, line.split())
         name = COUNTED[index]
-        for key, names in PARTS.items():
-            part[key] += count if name in names else 0
-        if name == "saddle_init":
-            counts["init"].append(count)
-        elif name == "saddle_plan_at":  # before each tick: what it called is not the tick's
-            part = dict.fromkeys(PARTS, 0)
-        elif name == "saddle_tick":
-            counts["tick"].append(count)
-            for key in PARTS:
-                counts[key].append(part[key])
-        elif name == "saddle_wire_encode_output":
-            counts["encode"].append(count)
+        if name in RECEIVE:
+            received += count
+            continue
+        counts[name.removeprefix("saddle_").removeprefix("wire_").removesuffix("_output")] += [
+            count
+        ]
+        if name == "saddle_tick":
+            counts["receive"].append(received)
+            received = 0
     return counts
 
 
@@ -177,8 +167,7 @@ def measure_level(tools: Tools, level: str) -> tuple[Costs, dict[str, list[float
         "tick_median": statistics.median_low(counts["tick"]),
         "walking_median": kinds["walking"][MEDIAN],
         "tick_max": max(counts["tick"]),
-        "planner_max": max(counts["planner"]),
-        "supervisor_max": max(counts["supervisor"]),
+        "plan_at_max": max(counts["plan_at"]),
         "receive_max": max(counts["receive"]),
         "encode_max": max(counts["encode"]),
         "undefined_core": undefined(tools, "core", level),
@@ -260,8 +249,7 @@ ROWS = [
     ("Os", "tick_median", "any tick, -Os, median"),
     ("Os", "walking_median", "tick of a walk, -Os, median"),
     ("Os", "tick_max", "any tick, -Os, maximum"),
-    ("O2", "planner_max", "planner in a tick, -O2, maximum"),
-    ("O2", "supervisor_max", "supervisor in a tick, -O2, maximum"),
+    ("O2", "plan_at_max", "plan between ticks, -O2, maximum"),
     ("O2", "receive_max", "wire: receive 4 frames, -O2, maximum"),
     ("O2", "encode_max", "wire: encode the output, -O2, maximum"),
     ("O2", "undefined_core", "needed of others by the core, -O2"),

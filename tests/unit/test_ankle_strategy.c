@@ -165,7 +165,7 @@ static void test_cycloid_has_the_human_amplitude_and_its_slope(void)
         const double excursion = 0.02656 * (double)speed + 0.002575;
         for (int k = -20; k <= 20; k++) {
             const double angle = 0.025 * PI * k;
-            const saddle_sample_t height = saddle_cycloid(model_of(&config), &quarter, (float)angle);
+            const saddle_sample_t height = saddle_cycloid(model_of(&config), &quarter, saddle_sin_cos((float)angle));
             const double z = via_point - 0.5 * excursion * (1.0 - cos(2.0 * angle));
             const double slope =
                 -excursion * sin(2.0 * angle) * 0.5 * PI / (double)quarter.length_m;

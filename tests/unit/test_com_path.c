@@ -1,6 +1,7 @@
 /** The CoM in the transverse plane against eq:01 and its derivative in double precision. */
 #include "core_test.h"
 
+#include "math/elementary.h"
 #include "model/gait_model.h"
 #include "motion/com_path.h"
 
@@ -28,10 +29,11 @@ static void test_path_is_the_equation_s(void)
             const double amplitude = sign * (double)quarter.amplitude_m;
             for (int k = -100; k <= 100; k++) {
                 const double x = 0.01 * k * (double)quarter.length_m;
-                const float angle = saddle_quarter_angle_rad(&quarter, (float)x);
-                const saddle_sample_t lateral = saddle_com_lateral(&quarter, angle);
+                const saddle_sin_cos_t phase = saddle_quarter_phase(&quarter, (float)x);
+                const saddle_sample_t lateral = saddle_com_lateral(&quarter, phase);
                 const double stance_y = 0.5 * sign * (double)quarter.width_m;
-                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, rate * x, angle);
+                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, sin(rate * x), phase.sin);
+                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, cos(rate * x), phase.cos);
                 TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, amplitude * cos(rate * x) - stance_y,
                                           lateral.value);
                 TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -amplitude * rate * sin(rate * x),
@@ -44,20 +46,29 @@ static void test_path_is_the_equation_s(void)
 static void test_via_points(void)
 {
     const saddle_quarter_t left = quarter_at(1.2f, SADDLE_LEFT);
-    const saddle_sample_t foot = saddle_com_lateral(&left, 0.0f);
+    const saddle_sample_t foot = saddle_com_lateral(&left, SADDLE_PHASE_FOOT);
     ASSERT_SAME_FLOAT(left.amplitude_m - 0.5f * left.width_m, foot.value);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, foot.slope);
-    const float end = saddle_quarter_angle_rad(&left, left.length_m);
-    const saddle_sample_t saddle = saddle_com_lateral(&left, end);
+    const saddle_sample_t saddle = saddle_com_lateral(&left, SADDLE_PHASE_LANDING);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, -0.05, saddle.value); /* on the walking line */
     TEST_ASSERT_TRUE(saddle.slope < 0.0f);                /* from the left foot to the right */
 }
 
-static void test_angle_ends_with_the_quarter(void)
+static void test_phase_ends_with_the_quarter_and_is_known_at_via_points(void)
 {
     const saddle_quarter_t quarter = quarter_at(1.2f, SADDLE_LEFT);
-    ASSERT_SAME_FLOAT(1.57079633f, saddle_quarter_angle_rad(&quarter, 2.0f * quarter.length_m));
-    ASSERT_SAME_FLOAT(-1.57079633f, saddle_quarter_angle_rad(&quarter, -1.01f * quarter.length_m));
+    const struct {
+        float share;
+        saddle_sin_cos_t phase;
+    } table[] = {{0.0f, SADDLE_PHASE_FOOT},      {1.0f, SADDLE_PHASE_LANDING},
+                 {2.0f, SADDLE_PHASE_LANDING},   {-1.0f, SADDLE_PHASE_LANDED},
+                 {-1.01f, SADDLE_PHASE_LANDED}};
+    for (size_t i = 0; i < COUNT_OF(table); i++) {
+        const saddle_sin_cos_t phase =
+            saddle_quarter_phase(&quarter, table[i].share * quarter.length_m);
+        ASSERT_SAME_FLOAT(table[i].phase.sin, phase.sin);
+        ASSERT_SAME_FLOAT(table[i].phase.cos, phase.cos);
+    }
 }
 
 int main(void)
@@ -65,6 +76,6 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_path_is_the_equation_s);
     RUN_TEST(test_via_points);
-    RUN_TEST(test_angle_ends_with_the_quarter);
+    RUN_TEST(test_phase_ends_with_the_quarter_and_is_known_at_via_points);
     return UNITY_END();
 }

@@ -25,12 +25,20 @@ typedef struct {
     saddle_com_state_t state, planned;
 } posture_t;
 
+static saddle_support_t support_of(const saddle_vec2_t cop_m[2], const saddle_bos_t *bos,
+                                   saddle_vec2_t com_m)
+{
+    const float pendulum_m = model_of(&config)->body.pendulum_m;
+    return (saddle_support_t){cop_m, bos, saddle_surface(cop_m, com_m, pendulum_m)};
+}
+
 static float excess_stop(const posture_t *posture)
 {
     const saddle_bos_t bos = saddle_bos(posture->cop_m, config.cop_range_m, config.bos_factor);
     float excess_j;
-    TEST_ASSERT_TRUE(saddle_excess_stop_j(model_of(&config), posture->cop_m, &bos, &posture->state,
-                                          &excess_j));
+    const saddle_support_t support = support_of(posture->cop_m, &bos, posture->state.com_m);
+    TEST_ASSERT_TRUE(
+        saddle_excess_stop_j(model_of(&config), &support, &posture->state, &excess_j));
     return excess_j;
 }
 
@@ -38,7 +46,8 @@ static float excess_track(const posture_t *posture)
 {
     const saddle_bos_t bos = saddle_bos(posture->cop_m, config.cop_range_m, config.bos_factor);
     float excess_j;
-    TEST_ASSERT_TRUE(saddle_excess_track_j(model_of(&config), posture->cop_m, &bos, &posture->state,
+    const saddle_support_t support = support_of(posture->cop_m, &bos, posture->state.com_m);
+    TEST_ASSERT_TRUE(saddle_excess_track_j(model_of(&config), &support, &posture->state,
                                            &posture->planned, &excess_j));
     return excess_j;
 }
@@ -200,12 +209,13 @@ static void test_no_energy_is_told_where_no_leg_reaches(void)
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         const saddle_bos_t bos = saddle_bos(table[i].cop_m, config.cop_range_m, 1.0f);
         const saddle_com_state_t *state = &table[i].state;
+        const saddle_support_t support = support_of(table[i].cop_m, &bos, state->com_m);
         float stop_j = NAN;
         float track_j = NAN;
         TEST_ASSERT_FALSE(
-            saddle_excess_stop_j(model_of(&config), table[i].cop_m, &bos, state, &stop_j));
+            saddle_excess_stop_j(model_of(&config), &support, state, &stop_j));
         TEST_ASSERT_FALSE(
-            saddle_excess_track_j(model_of(&config), table[i].cop_m, &bos, state, state, &track_j));
+            saddle_excess_track_j(model_of(&config), &support, state, state, &track_j));
         ASSERT_SAME_FLOAT(0.0f, stop_j);
         ASSERT_SAME_FLOAT(0.0f, track_j);
     }

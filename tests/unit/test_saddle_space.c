@@ -441,6 +441,22 @@ static void test_exit_of_random_points_is_where_the_ray_or_the_nearest_border_is
 
 /* ---- energy surface ------------------------------------------------------------------------ */
 
+static bool surface_height_m(const saddle_vec2_t cop[2], saddle_vec2_t com, float pendulum_m,
+                             float *height)
+{
+    const saddle_surface_t surface = saddle_surface(cop, com, pendulum_m);
+    *height = surface.height_m;
+    return surface.reached;
+}
+
+static bool gravity_n(const saddle_vec2_t cop[2], saddle_vec2_t com, float pendulum_m,
+                      saddle_vec2_t *force)
+{
+    const saddle_surface_t surface = saddle_surface(cop, com, pendulum_m);
+    *force = saddle_gravity_n(&surface, 63.3f);
+    return surface.reached;
+}
+
 static double surface_height(const saddle_vec2_t cop[2], double x, double y)
 {
     double highest = 0.0;
@@ -456,16 +472,16 @@ static void test_surface_height_is_over_the_nearer_foot(void)
 {
     const saddle_vec2_t cop[2] = {{0.3f, 0.05f}, {-0.3f, -0.05f}};
     float height;
-    TEST_ASSERT_TRUE(saddle_surface_height_m(cop, cop[SADDLE_LEFT], 1.02f, &height));
+    TEST_ASSERT_TRUE(surface_height_m(cop, cop[SADDLE_LEFT], 1.02f, &height));
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.02, height); /* the maximum over a foot */
-    TEST_ASSERT_TRUE(saddle_surface_height_m(cop, cop[SADDLE_RIGHT], 1.02f, &height));
+    TEST_ASSERT_TRUE(surface_height_m(cop, cop[SADDLE_RIGHT], 1.02f, &height));
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.02, height);
-    TEST_ASSERT_TRUE(saddle_surface_height_m(cop, (saddle_vec2_t){0.0f, 0.0f}, 1.02f, &height));
+    TEST_ASSERT_TRUE(surface_height_m(cop, (saddle_vec2_t){0.0f, 0.0f}, 1.02f, &height));
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, sqrt(1.02 * 1.02 - 0.0925), height); /* the saddle */
     uint32_t state = 37;
     for (int i = 0; i < MANY(5000); i++) {
         const saddle_vec2_t com = random_point(&state, 0.5f);
-        TEST_ASSERT_TRUE(saddle_surface_height_m(cop, com, 1.02f, &height));
+        TEST_ASSERT_TRUE(surface_height_m(cop, com, 1.02f, &height));
         TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE,
                                   surface_height(cop, (double)com.x, (double)com.y), height);
     }
@@ -477,11 +493,11 @@ static void test_surface_ends_where_the_pendulum_lies_down(void)
     const float lowest = sqrtf(1.0f - SADDLE_LOWEST_PENDULUM * SADDLE_LOWEST_PENDULUM);
     float height = 1.0f;
     TEST_ASSERT_FALSE(
-        saddle_surface_height_m(cop, (saddle_vec2_t){0.8f * lowest + 1e-4f, 0.05f}, 0.8f,
+        surface_height_m(cop, (saddle_vec2_t){0.8f * lowest + 1e-4f, 0.05f}, 0.8f,
                                 &height));
     ASSERT_SAME_FLOAT(0.0f, height);
     TEST_ASSERT_TRUE(
-        saddle_surface_height_m(cop, (saddle_vec2_t){0.8f * lowest - 1e-4f, 0.05f}, 0.8f,
+        surface_height_m(cop, (saddle_vec2_t){0.8f * lowest - 1e-4f, 0.05f}, 0.8f,
                                 &height));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.08, height);
 }
@@ -503,7 +519,7 @@ static void test_gravity_is_the_slope_of_the_energy(void)
             continue; /* on the ridge between the feet the slope has two values */
         }
         saddle_vec2_t force;
-        TEST_ASSERT_TRUE(saddle_gravity_force(cop, com, 1.02f, 63.3f, &force));
+        TEST_ASSERT_TRUE(gravity_n(cop, com, 1.02f, &force));
         const double slope_x =
             (surface_height(cop, x + h, y) - surface_height(cop, x - h, y)) / (2 * h);
         const double slope_y =
@@ -519,11 +535,11 @@ static void test_gravity_ends_where_the_pendulum_lies_down(void)
     const float lowest = sqrtf(1.0f - SADDLE_LOWEST_PENDULUM * SADDLE_LOWEST_PENDULUM);
     saddle_vec2_t force = {1.0f, 1.0f};
     const saddle_vec2_t beyond = {lowest + 1e-4f, 0.05f};
-    TEST_ASSERT_FALSE(saddle_gravity_force(cop, beyond, 1.0f, 63.3f, &force));
+    TEST_ASSERT_FALSE(gravity_n(cop, beyond, 1.0f, &force));
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, force.x);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, force.y);
     const saddle_vec2_t within = {lowest - 1e-4f, 0.05f};
-    TEST_ASSERT_TRUE(saddle_gravity_force(cop, within, 1.0f, 63.3f, &force));
+    TEST_ASSERT_TRUE(gravity_n(cop, within, 1.0f, &force));
     const double x = (double)within.x;
     const double expected = 63.3 * GRAVITY * x / sqrt(1.0 - x * x);
     TEST_ASSERT_DOUBLE_WITHIN(0.1, expected, force.x); /* 6 kN; 1 - x^2 keeps 5 digits */

@@ -49,8 +49,9 @@ static void compare_state(const saddle_model_t *model, const saddle_wearer_t *we
     const saddle_posture_t *posture = wearer->posture;
     const saddle_scores_t *scores = wearer->scores;
     const saddle_com_state_t measured = {posture->com_m, posture->com_velocity_m_s};
-    const bool reached = saddle_excess_track_j(model, posture->cop_m, &scores->bos, &measured,
-                                               planned, &verdict->excess_track_j);
+    const saddle_support_t support = {posture->cop_m, &scores->bos, wearer->at_com};
+    const bool reached =
+        saddle_excess_track_j(model, &support, &measured, planned, &verdict->excess_track_j);
     verdict->compared = true;
     verdict->on_track = reached && model->body.ankle_work_j >= verdict->excess_track_j;
     verdict->xcom_deviation_m = saddle_vec2_sub(scores->xcom_m, xcom_of(model, planned));
@@ -185,7 +186,8 @@ bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
     const float speed_m_s = intent->leads ? intent->step.speed_m_s : steps->v_comp_m_s;
     if (walks && saddle_in_range(speed_m_s, SPEED_MIN_M_S, SPEED_MAX_M_S)) {
         const saddle_posture_t *posture = wearer->posture;
-        nominal_t own = {.step = nominal_step(model, steps, speed_m_s)};
+        nominal_t own;
+        own.step = nominal_step(model, steps, speed_m_s);
         own.x_m = posture->com_m.x - posture->cop_m[own.step.stance].x;
         compare_step(model, wearer, &own, verdict);
     } else if (!walks && (intent->leads || steps->stands)) {

@@ -4,6 +4,7 @@
 
 #include "balance/energy.h"
 #include "balance/expected_step.h"
+#include "balance/saddle_space.h"
 #include "balance/scores.h"
 
 #include <saddlewalk/private/context.h>
@@ -23,6 +24,7 @@ typedef struct {
     const saddle_measurement_t *measurement;
     const saddle_posture_t *posture; /**< of that measurement */
     const saddle_scores_t *scores;   /**< of that posture */
+    saddle_surface_t at_com;         /**< of that posture */
 } saddle_wearer_t;
 
 /** Clear what a comparison writes. */

@@ -3,18 +3,15 @@
 #include "math/elementary.h"
 #include "math/vec2.h"
 #include "model/gait_model.h"
+#include "model/model.h"
 #include "motion/com_path.h"
 
 /* A step that ends beside the stance foot still has a quarter with a shape. */
 #define QUARTER_MIN_M 1.0e-3f
 
-/* Both feet carry for about this long after a heel strike: a sixth of a step. */
-#define TRAILING_S 0.1f
-
 static saddle_com_state_t state_at(const saddle_quarter_t *quarter, float speed_m_s, float x_m)
 {
-    const saddle_sample_t lateral =
-        saddle_com_lateral(quarter, saddle_quarter_angle_rad(quarter, x_m));
+    const saddle_sample_t lateral = saddle_com_lateral(quarter, saddle_quarter_phase(quarter, x_m));
     const saddle_com_state_t state = {
         .com_m = {x_m, lateral.value},
         .velocity_m_s = {speed_m_s, lateral.slope * speed_m_s},
@@ -38,14 +35,17 @@ saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_ste
                                    float x_m)
 {
     const float half_ahead_m = 0.5f * step->landing_m.x;
-    const saddle_quarter_t behind = saddle_quarter(model, step->stance, step->half_behind_m,
-                                                   step->width_behind_m, step->speed_m_s);
-    const saddle_quarter_t ahead = saddle_quarter(
-        model, step->stance, half_ahead_m > QUARTER_MIN_M ? half_ahead_m : QUARTER_MIN_M,
-        saddle_magnitude(step->landing_m.y), step->speed_m_s);
+    const saddle_quarter_t ahead =
+        saddle_quarter(model, step->stance, saddle_larger(half_ahead_m, QUARTER_MIN_M),
+                       saddle_magnitude(step->landing_m.y), step->speed_m_s);
     const float phase_m = saddle_clamp(x_m, -step->half_behind_m, half_ahead_m);
+    saddle_quarter_t running = ahead;
+    if (phase_m < 0.0f) {
+        running = saddle_quarter(model, step->stance, step->half_behind_m, step->width_behind_m,
+                                 step->speed_m_s);
+    }
     saddle_expectation_t expected;
-    expected.now = state_at(phase_m < 0.0f ? &behind : &ahead, step->speed_m_s, phase_m);
+    expected.now = state_at(&running, step->speed_m_s, phase_m);
     expected.landing = half_ahead_m > QUARTER_MIN_M
                            ? state_at_saddle(&ahead, step->speed_m_s)
                            : state_at(&ahead, step->speed_m_s, half_ahead_m);
@@ -58,11 +58,15 @@ saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_ste
 
 saddle_growth_t saddle_growth(const saddle_model_t *model, float time_s, bool trailing)
 {
-    const float w = model->body.natural_frequency_rad_s;
-    const float carried_s = time_s < TRAILING_S ? time_s : TRAILING_S;
-    saddle_growth_t growth;
-    growth.factor = saddle_exp(w * time_s);
-    growth.trailing = trailing ? growth.factor - saddle_exp(w * (time_s - carried_s)) : 0.0f;
+    const saddle_body_t *body = &model->body;
+    const bool latest = time_s == model->config.foresight_s;
+    const float w = body->natural_frequency_rad_s;
+    saddle_growth_t growth = {.factor = latest ? body->foresight_growth : saddle_exp(w * time_s)};
+    if (trailing) {
+        const float free_s = time_s - saddle_smaller(time_s, SADDLE_TRAILING_S);
+        growth.trailing =
+            growth.factor - (latest ? body->foresight_free_growth : saddle_exp(w * free_s));
+    }
     return growth;
 }
 

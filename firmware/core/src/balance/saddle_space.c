@@ -174,29 +174,21 @@ static saddle_vec2_t lever_m(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m)
     return saddle_vec2_dot(right, right) < saddle_vec2_dot(left, left) ? right : left;
 }
 
-static bool pendulum_height_m(saddle_vec2_t lever, float pendulum_m, float *height_m)
+/* [E18] */
+saddle_surface_t saddle_surface(const saddle_vec2_t cop_m[2], saddle_vec2_t place_m,
+                                float pendulum_m)
 {
+    const saddle_vec2_t lever = lever_m(cop_m, place_m);
     const float height_m2 = pendulum_m * pendulum_m - lever.x * lever.x - lever.y * lever.y;
     const float lowest_m = SADDLE_LOWEST_PENDULUM * pendulum_m;
     const bool reached = height_m2 > lowest_m * lowest_m;
-    *height_m = reached ? sqrtf(height_m2) : 0.0f;
-    return reached;
+    return (saddle_surface_t){lever, reached ? sqrtf(height_m2) : 0.0f, reached};
 }
 
-bool saddle_surface_height_m(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m, float pendulum_m,
-                             float *height_m)
+/* [E18] */
+saddle_vec2_t saddle_gravity_n(const saddle_surface_t *surface, float mass_kg)
 {
-    return pendulum_height_m(lever_m(cop_m, com_m), pendulum_m, height_m);
-}
-
-bool saddle_gravity_force(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m, float pendulum_m,
-                          float mass_kg, saddle_vec2_t *force_n)
-{
-    const saddle_vec2_t lever = lever_m(cop_m, com_m);
-    float height_m;
-    const bool reached = pendulum_height_m(lever, pendulum_m, &height_m);
-    const float stiffness_n_m = reached ? mass_kg * SADDLE_GRAVITY_M_S2 / height_m : 0.0f;
-    force_n->x = stiffness_n_m * lever.x;
-    force_n->y = stiffness_n_m * lever.y;
-    return reached;
+    const float stiffness_n_m =
+        surface->reached ? mass_kg * SADDLE_GRAVITY_M_S2 / surface->height_m : 0.0f;
+    return saddle_vec2_scale(stiffness_n_m, surface->lever_m);
 }

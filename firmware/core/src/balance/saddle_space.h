@@ -24,14 +24,18 @@ saddle_bos_t saddle_bos_undefined(void);
 saddle_vec2_t saddle_bos_exit_m(const saddle_bos_t *bos, saddle_vec2_t point_m,
                                 saddle_vec2_t direction_m_s);
 
-/** [E18] z_s: height of the energy surface, U = m g z_s, over the CoP that carries, the nearer one.
- *  False, and 0, where the pendulum does not reach. */
-bool saddle_surface_height_m(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m, float pendulum_m,
-                             float *height_m);
+/** The energy surface U = m g z_s at a place, over the CoP that carries, the nearer one. */
+typedef struct {
+    saddle_vec2_t lever_m; /**< from that CoP to the place */
+    float height_m; /**< z_s; 0 where the pendulum does not reach */
+    bool reached;
+} saddle_surface_t;
 
-/** [E18] Gravity along the energy surface, from the leg that carries (the nearer CoP).
- *  False, and zero force, where the pendulum does not reach. */
-bool saddle_gravity_force(const saddle_vec2_t cop_m[2], saddle_vec2_t com_m, float pendulum_m,
-                          float mass_kg, saddle_vec2_t *force_n);
+/** [E18] */
+saddle_surface_t saddle_surface(const saddle_vec2_t cop_m[2], saddle_vec2_t place_m,
+                                float pendulum_m);
+
+/** [E18] Gravity along the energy surface; zero where the pendulum does not reach. */
+saddle_vec2_t saddle_gravity_n(const saddle_surface_t *surface, float mass_kg);
 
 #endif

@@ -1,7 +1,6 @@
 #include "balance/scores.h"
 
 #include "balance/energy.h"
-#include "balance/saddle_space.h"
 #include "balance/stability_scores.h"
 #include "model/gait_model.h"
 
@@ -23,17 +22,18 @@ static void score_steps(const saddle_model_t *model, const saddle_posture_t *pos
 }
 
 static void score_energy(const saddle_model_t *model, const saddle_posture_t *posture,
-                         saddle_scores_t *scores)
+                         const saddle_surface_t *at_com, saddle_scores_t *scores)
 {
     const saddle_com_state_t state = {posture->com_m, posture->com_velocity_m_s};
-    if (saddle_excess_stop_j(model, posture->cop_m, &scores->bos, &state, &scores->excess_stop_j)) {
+    const saddle_support_t support = {posture->cop_m, &scores->bos, *at_com};
+    if (saddle_excess_stop_j(model, &support, &state, &scores->excess_stop_j)) {
         scores->can_stop = model->body.ankle_work_j >= scores->excess_stop_j;
         scores->valid |= (uint32_t)SADDLE_VALID_STOP;
     }
 }
 
 static void score_space(const saddle_model_t *model, const saddle_posture_t *posture,
-                        saddle_scores_t *scores)
+                        const saddle_surface_t *at_com, saddle_scores_t *scores)
 {
     scores->bos = saddle_bos(posture->cop_m, model->config.cop_range_m, model->config.bos_factor);
     if (!scores->bos.defined) {
@@ -44,10 +44,10 @@ static void score_space(const saddle_model_t *model, const saddle_posture_t *pos
     if ((posture->known & SADDLE_KNOWN_VELOCITY) != 0u) {
         scores->mos_xcom_m = saddle_bos_margin_m(&scores->bos, scores->xcom_m);
         scores->valid |= (uint32_t)SADDLE_VALID_MOS_XCOM;
-        score_energy(model, posture, scores);
+        score_energy(model, posture, at_com, scores);
     }
-    if (saddle_gravity_force(posture->cop_m, posture->com_m, model->body.pendulum_m,
-                             model->config.body_mass_kg, &scores->gravity_n)) {
+    if (at_com->reached) {
+        scores->gravity_n = saddle_gravity_n(at_com, model->config.body_mass_kg);
         scores->valid |= (uint32_t)SADDLE_VALID_GRAVITY;
     }
 }
@@ -94,9 +94,11 @@ static void score_nothing(saddle_scores_t *scores)
     scores->bos = saddle_bos_undefined();
 }
 
-void saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
-                          saddle_scores_t *scores)
+saddle_surface_t saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
+                                      saddle_scores_t *scores)
 {
+    saddle_surface_t at_com;
+    at_com.reached = false;
     score_nothing(scores);
     if ((posture->known & SADDLE_KNOWN_VELOCITY) != 0u) {
         scores->xcom_m = saddle_xcom_m(posture->com_m, posture->com_velocity_m_s,
@@ -106,9 +108,11 @@ void saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *p
         score_walk(model, posture, scores);
     }
     if ((posture->known & SADDLE_KNOWN_FEET) != 0u) {
-        score_space(model, posture, scores);
+        at_com = saddle_surface(posture->cop_m, posture->com_m, model->body.pendulum_m);
+        score_space(model, posture, &at_com, scores);
     }
     scores->paper_stable = scores->can_stop || stable_step(scores);
+    return at_com;
 }
 
 uint32_t saddle_score_faults(uint32_t known, const saddle_scores_t *scores)

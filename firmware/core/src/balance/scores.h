@@ -2,6 +2,8 @@
 #ifndef SADDLEWALK_SCORES_H
 #define SADDLEWALK_SCORES_H
 
+#include "balance/saddle_space.h"
+
 #include <saddlewalk/private/context.h>
 
 typedef enum {
@@ -20,9 +22,10 @@ typedef struct {
     uint32_t known;    /**< saddle_known_t bits; the numbers of the others are not read */
 } saddle_posture_t;
 
-/** Score a posture. Whatever is not known is not scored. Writes all of *scores. */
-void saddle_score_posture(const saddle_model_t *model,
-                          const saddle_posture_t *posture, saddle_scores_t *scores);
+/** Score a posture. Whatever is not known is not scored. Writes all of *scores. Returns the energy
+ *  surface at the CoM, not reached if the feet are not known. */
+saddle_surface_t saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
+                                      saddle_scores_t *scores);
 
 /** Whether all of these saddle_valid_t results are there. */
 bool saddle_scores_hold(const saddle_scores_t *scores, uint32_t results);

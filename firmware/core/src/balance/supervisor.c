@@ -76,12 +76,12 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
                     (com_known ? (uint32_t)SADDLE_KNOWN_VELOCITY : 0u) |
                     (speed_known ? (uint32_t)SADDLE_KNOWN_SPEED : 0u) |
                     (half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u);
-    saddle_score_posture(model, &posture, scores);
+    const saddle_surface_t at_com = saddle_score_posture(model, &posture, scores);
     const uint32_t all_faults = faults | saddle_score_faults(posture.known, scores);
     saddle_compare_nothing(verdict);
     bool on_plan = false;
     if (com_known && feet_known && scores->bos.defined) {
-        const saddle_wearer_t wearer = {steps, measurement, &posture, scores};
+        const saddle_wearer_t wearer = {steps, measurement, &posture, scores, at_com};
         on_plan = saddle_compare(model, &wearer, intent, verdict);
     }
     no_margin(verdict);

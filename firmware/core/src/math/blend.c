@@ -23,9 +23,10 @@ saddle_sample_t saddle_blend_at(const saddle_blend_t *blend, float place_m)
     }
     const float s = saddle_clamp((place_m - blend->start_m) / blend->length_m, 0.0f, 1.0f);
     const float rest = 1.0f - s;
-    mismatch.value = blend->start.value * (1.0f - saddle_min_jerk(s)) +
+    const saddle_jerk_t fade = saddle_min_jerk_both(s);
+    mismatch.value = blend->start.value * (1.0f - fade.value) +
                      blend->start.slope * blend->length_m * s * rest * rest;
     mismatch.slope = blend->start.slope * rest * (1.0f - 3.0f * s) -
-                     blend->start.value * saddle_min_jerk_slope(s) / blend->length_m;
+                     blend->start.value * fade.slope / blend->length_m;
     return mismatch;
 }

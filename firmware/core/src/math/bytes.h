@@ -1,4 +1,4 @@
-/** Clearing and copying whole objects without a libc. */
+/** Clearing and copying whole objects, aligned as a uint32_t at least, without a libc. */
 #ifndef SADDLEWALK_BYTES_H
 #define SADDLEWALK_BYTES_H
 

@@ -158,18 +158,22 @@ float saddle_erf(float x)
     return x < 0.0f ? -y : y;
 }
 
-float saddle_min_jerk(float s)
+static float min_jerk(float limited)
 {
-    const float limited = saddle_clamp(s, 0.0f, 1.0f);
     const bool second_half = limited > 0.5f; /* f(s) = 1 - f(1 - s) keeps the landing exact */
     const float u = second_half ? 1.0f - limited : limited;
     const float y = u * u * u * (10.0f + u * (6.0f * u - 15.0f));
     return second_half ? 1.0f - y : y;
 }
 
-float saddle_min_jerk_slope(float s)
+float saddle_min_jerk(float s)
+{
+    return min_jerk(saddle_clamp(s, 0.0f, 1.0f));
+}
+
+saddle_jerk_t saddle_min_jerk_both(float s)
 {
     const float limited = saddle_clamp(s, 0.0f, 1.0f);
     const float product = limited * (1.0f - limited);
-    return 30.0f * product * product;
+    return (saddle_jerk_t){min_jerk(limited), 30.0f * product * product};
 }

@@ -1,7 +1,5 @@
 #include "motion/ankle_strategy.h"
 
-#include "math/elementary.h"
-
 #include <math.h>
 
 #define TWO_OVER_SQRT_PI 1.12837917f
@@ -24,10 +22,15 @@ static float toe_off_elongation_m(const saddle_model_t *model, const saddle_quar
     return sqrtf(height_m * height_m + x_m * x_m + y_m * y_m) - model->body.pendulum_m;
 }
 
+float saddle_heel_strike_lead_m(const saddle_model_t *model, float heel_strike_rad)
+{
+    return model->config.cop_range_m * (1.0f - saddle_cos(heel_strike_rad));
+}
+
 saddle_transition_t saddle_transition(const saddle_model_t *model, const saddle_quarter_t *quarter,
                                       float heel_strike_rad)
 {
-    const float lead_m = model->config.cop_range_m * (1.0f - saddle_cos(heel_strike_rad));
+    const float lead_m = saddle_heel_strike_lead_m(model, heel_strike_rad);
     const float sine =
         toe_off_elongation_m(model, quarter, lead_m) / (2.0f * model->config.cop_range_m);
     const float limited = saddle_clamp(sine, 0.0f, 1.0f);
@@ -99,15 +102,14 @@ void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m
 }
 
 saddle_sample_t saddle_cycloid(const saddle_model_t *model, const saddle_quarter_t *quarter,
-                               float angle_rad)
+                               saddle_sin_cos_t phase)
 {
     const float offset_m = 0.5f * quarter->width_m - quarter->amplitude_m;
     const float via_point_m =
         sqrtf(model->body.pendulum_m * model->body.pendulum_m - offset_m * offset_m);
-    const saddle_sin_cos_t angle = saddle_sin_cos(angle_rad);
     saddle_sample_t height;
-    height.value = via_point_m - quarter->vertical_m * angle.sin * angle.sin;
-    height.slope = -SADDLE_PI * quarter->vertical_m * angle.sin * angle.cos / quarter->length_m;
+    height.value = via_point_m - quarter->vertical_m * phase.sin * phase.sin;
+    height.slope = -SADDLE_PI * quarter->vertical_m * phase.sin * phase.cos / quarter->length_m;
     return height;
 }
 

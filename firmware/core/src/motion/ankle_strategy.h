@@ -2,6 +2,8 @@
 #ifndef SADDLEWALK_ANKLE_STRATEGY_H
 #define SADDLEWALK_ANKLE_STRATEGY_H
 
+#include "math/elementary.h"
+
 #include <saddlewalk/private/context.h>
 
 typedef struct {
@@ -13,8 +15,8 @@ typedef struct {
 } saddle_ankle_state_t;
 
 /** The transition at the saddle via point of a quarter. heel_strike_rad in [0, pi/2]. */
-saddle_transition_t saddle_transition(const saddle_model_t *model,
-                                      const saddle_quarter_t *quarter, float heel_strike_rad);
+saddle_transition_t saddle_transition(const saddle_model_t *model, const saddle_quarter_t *quarter,
+                                      float heel_strike_rad);
 
 /** Ankle angles, sole to ground. */
 typedef struct {
@@ -31,21 +33,23 @@ saddle_ankle_angles_t saddle_ankle_angles(const saddle_model_t *model,
 /** The ankles since_strike_s after the nearest heel strike (negative: before it). Before the saddle
  *  via point the stance leg is in its toe-off part, after it in its heel-strike part:
  *  toe_off_acts. */
-void saddle_ankle(const saddle_model_t *model,
-                  const saddle_transition_t *transition, float since_strike_s, bool toe_off_acts,
-                  saddle_ankle_state_t *ankle);
+void saddle_ankle(const saddle_model_t *model, const saddle_transition_t *transition,
+                  float since_strike_s, bool toe_off_acts, saddle_ankle_state_t *ankle);
 
 /** [E14] CoM height and its rate over a stance CoP at `offset_m` horizontally from it. */
 void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m,
                        saddle_vec2_t velocity_m_s, float *height_m, float *height_rate_m_s);
 
-/** [E24] CoM height of the cycloid model at a phase angle, and dz/dx. */
+/** [E24] CoM height of the cycloid model at a phase (com_path.h), and dz/dx. */
 saddle_sample_t saddle_cycloid(const saddle_model_t *model, const saddle_quarter_t *quarter,
-                               float angle_rad);
+                               saddle_sin_cos_t phase);
+
+/** [E12] Distance that the CoM goes between a heel strike at that angle and the saddle via point. */
+float saddle_heel_strike_lead_m(const saddle_model_t *model, float heel_strike_rad);
 
 /** [E25] The ankle angle that gives the stance leg its length: of toe-off or of heel strike, at
  *  most pi/2, the sole upright. False if it would be more. */
-bool saddle_ankle_for_leg(const saddle_model_t *model,
-                          float leg_length_m, bool toe_off_acts, saddle_ankle_state_t *ankle);
+bool saddle_ankle_for_leg(const saddle_model_t *model, float leg_length_m, bool toe_off_acts,
+                          saddle_ankle_state_t *ankle);
 
 #endif

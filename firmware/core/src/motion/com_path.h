@@ -2,13 +2,22 @@
 #ifndef SADDLEWALK_COM_PATH_H
 #define SADDLEWALK_COM_PATH_H
 
+#include "math/elementary.h"
+
 #include <saddlewalk/private/context.h>
 
-/** Phase angle in [-pi/2, pi/2] of the place x_m from the stance CoP: 0 at the foot via point,
- *  +-pi/2 at the saddle via points. |x_m| <= length_m. */
-float saddle_quarter_angle_rad(const saddle_quarter_t *quarter, float x_m);
+/** Sine and cosine of the phase angle where the CoM is beside the stance foot, the foot via point; and
+ *  where it is midway between the feet, a saddle via point, before a landing and after one. These are
+ *  the bits of saddle_sin_cos() at 0 and +-pi/2. */
+#define SADDLE_PHASE_FOOT ((saddle_sin_cos_t){0.0f, 1.0f})
+#define SADDLE_PHASE_LANDING ((saddle_sin_cos_t){1.0f, -4.37113954e-8f})
+#define SADDLE_PHASE_LANDED ((saddle_sin_cos_t){-1.0f, -4.37113954e-8f})
 
-/** [E7] CoM y from the stance CoP, and dy/dx. */
-saddle_sample_t saddle_com_lateral(const saddle_quarter_t *quarter, float angle_rad);
+/** The same at the place x_m from the stance CoP, |x_m| <= length_m: of an angle in [-pi/2, pi/2] that
+ *  grows with the distance. */
+saddle_sin_cos_t saddle_quarter_phase(const saddle_quarter_t *quarter, float x_m);
+
+/** [E7] CoM y from the stance CoP, and dy/dx, at a phase. */
+saddle_sample_t saddle_com_lateral(const saddle_quarter_t *quarter, saddle_sin_cos_t phase);
 
 #endif

@@ -21,8 +21,9 @@ static void swing_height(float air, float air_rate_hz, float clearance_m,
     const bool rising = air < 0.5f;
     const float profile = 2.0f * (rising ? air : 1.0f - air);
     const float rate_hz = 2.0f * (rising ? air_rate_hz : -air_rate_hz);
-    foot->position_m.z = clearance_m * saddle_min_jerk(profile);
-    foot->velocity_m_s.z = clearance_m * saddle_min_jerk_slope(profile) * rate_hz;
+    const saddle_jerk_t rise = saddle_min_jerk_both(profile);
+    foot->position_m.z = clearance_m * rise.value;
+    foot->velocity_m_s.z = clearance_m * rise.slope * rate_hz;
 }
 
 void saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
@@ -32,8 +33,9 @@ void saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
     const float duration = swing->land_progress - swing->lift_progress;
     const float air = saddle_clamp((progress - swing->lift_progress) / duration, 0.0f, 1.0f);
     const float air_rate_hz = rate_hz / duration;
-    const float fade = 1.0f - saddle_min_jerk(2.0f * air);
-    const float fade_rate_hz = -2.0f * saddle_min_jerk_slope(2.0f * air) * air_rate_hz;
+    const saddle_jerk_t return_to_line = saddle_min_jerk_both(2.0f * air);
+    const float fade = 1.0f - return_to_line.value;
+    const float fade_rate_hz = -2.0f * return_to_line.slope * air_rate_hz;
     const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral);
     foot->position_m.x = line.value + swing->offset_m.x * fade;
     foot->position_m.y = swing->line_y_m + swing->offset_m.y * fade;

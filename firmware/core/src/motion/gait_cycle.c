@@ -43,65 +43,66 @@ static saddle_sample_t sum(saddle_sample_t a, saddle_sample_t b)
     return total;
 }
 
-static saddle_sample_t lateral_reference(const saddle_cycle_t *cycle, float x_m)
+/* The CoM at a place: y, and z for the cycloid; the other ankles have no height of their own. */
+typedef struct {
+    saddle_sample_t lateral, vertical;
+} place_t;
+
+/* Where the running quarter has the CoM at a phase. */
+static place_t reference_at(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                            saddle_sin_cos_t phase)
 {
-    return saddle_com_lateral(&cycle->quarter, saddle_quarter_angle_rad(&cycle->quarter, x_m));
+    const saddle_sample_t none = {0.0f, 0.0f};
+    const bool cycloid = model->config.ankle == SADDLE_ANKLE_CYCLOID;
+    return (place_t){
+        .lateral = saddle_com_lateral(&cycle->quarter, phase),
+        .vertical = cycloid ? saddle_cycloid(model, &cycle->quarter, phase) : none,
+    };
 }
 
-static saddle_sample_t vertical_reference(const saddle_cycle_t *cycle, const saddle_model_t *model,
-                                          float x_m)
+/* Where the CoM is x_m from the stance CoP: the reference, and what of a mismatch is left. */
+static place_t place_at(const saddle_cycle_t *cycle, const place_t *reference, float x_m)
 {
-    return saddle_cycloid(model, &cycle->quarter, saddle_quarter_angle_rad(&cycle->quarter, x_m));
+    return (place_t){
+        .lateral = sum(reference->lateral, saddle_blend_at(&cycle->lateral, x_m)),
+        .vertical = sum(reference->vertical, saddle_blend_at(&cycle->vertical, x_m)),
+    };
 }
 
-static saddle_sample_t lateral_at(const saddle_cycle_t *cycle, float x_m)
-{
-    return sum(lateral_reference(cycle, x_m), saddle_blend_at(&cycle->lateral, x_m));
-}
-
-/* For the cycloid; the other ankles have no height of their own to go on from. */
-static saddle_sample_t vertical_at(const saddle_cycle_t *cycle, const saddle_model_t *model,
-                                   float x_m)
-{
-    if (model->config.ankle != SADDLE_ANKLE_CYCLOID) {
-        const saddle_sample_t none = {0.0f, 0.0f};
-        return none;
-    }
-    return sum(vertical_reference(cycle, model, x_m), saddle_blend_at(&cycle->vertical, x_m));
-}
-
-/* Give the running quarter a new shape; what it changes at the CoM fades out until its end. */
-static void reshape(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_quarter_t quarter,
-                    saddle_sample_t lateral, saddle_sample_t vertical)
+/* Give the running quarter, at a phase, a new shape; what it changes at the CoM fades out until its
+ * end. Returns the new reference. */
+static place_t reshape(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_quarter_t quarter,
+                       saddle_sin_cos_t phase, const place_t *actual)
 {
     const float x_m = saddle_position_to_m(cycle->position);
     const bool before = saddle_cycle_before_landing(cycle);
     const float rest_m = before ? quarter.length_m - x_m : -x_m;
     cycle->quarter = quarter;
     cycle->swing.path_width_m = quarter.width_m;
-    cycle->lateral = saddle_blend(lateral, lateral_reference(cycle, x_m), x_m, rest_m);
+    const place_t reference = reference_at(cycle, model, phase);
+    cycle->lateral = saddle_blend(actual->lateral, reference.lateral, x_m, rest_m);
     if (model->config.ankle == SADDLE_ANKLE_CYCLOID) {
-        cycle->vertical =
-            saddle_blend(vertical, vertical_reference(cycle, model, x_m), x_m, rest_m);
+        cycle->vertical = saddle_blend(actual->vertical, reference.vertical, x_m, rest_m);
     } else {
         cycle->transition = saddle_transition(
             model, &cycle->quarter, before ? cycle->next_heel_strike_rad : cycle->heel_strike_rad);
     }
+    return reference;
 }
 
-/* The foot via point: the next step's length follows from the speed now. */
+/* The foot via point: the next step's length follows from the speed now. Every mismatch has gone. */
 static void pass_foot(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_fixed_t speed)
 {
     const saddle_side_t stance = cycle->quarter.stance;
-    const saddle_sample_t lateral = lateral_at(cycle, 0.0f);
-    const saddle_sample_t vertical = vertical_at(cycle, model, 0.0f);
+    const place_t actual = reference_at(cycle, model, SADDLE_PHASE_FOOT);
     cycle->phase = (uint8_t)((cycle->phase + 1u) % 4u);
     cycle->stride_count += cycle->phase == 0u ? 1u : 0u;
     cycle->quarter_length = saddle_half_step(model, saddle_other_side(stance), speed);
-    reshape(cycle, model,
-            saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
-                           saddle_magnitude(cycle->swing.line_y_m), saddle_speed_to_m_s(speed)),
-            lateral, vertical);
+    (void)reshape(cycle, model,
+                  saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
+                                 saddle_magnitude(cycle->swing.line_y_m),
+                                 saddle_speed_to_m_s(speed)),
+                  SADDLE_PHASE_FOOT, &actual);
 }
 
 /* The line on which the next swing foot travels, from the new stance CoP: at its place beside the
@@ -117,9 +118,10 @@ static float swing_line_y_m(const saddle_cycle_t *cycle, const saddle_model_t *m
     return outward * saddle_clamp(outward * line_y_m, 0.5f * width_m, 2.0f * width_m);
 }
 
-/* Let the other foot, at lifted_m, begin a swing: what it is off its line fades out. */
+/* Let the other foot, at lifted_m, begin a swing: what it is off its line fades out. lateral: the
+ * reference there. */
 static void lift_off(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t lifted_m,
-                     float speed_m_s)
+                     float speed_m_s, saddle_sample_t lateral)
 {
     const saddle_side_t foot = saddle_other_side(cycle->quarter.stance);
     const float x_m = saddle_position_to_m(cycle->position);
@@ -128,7 +130,7 @@ static void lift_off(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_
     swing->land_progress = cycle->last_swing ? 0.5f : 1.0f;
     swing->clearance_m = model->config.swing_clearance_m;
     swing->line_y_m = swing_line_y_m(cycle, model, foot, speed_m_s);
-    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral_reference(cycle, x_m));
+    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral);
     swing->offset_m.x = lifted_m.x - line.value;
     swing->offset_m.y = lifted_m.y - swing->line_y_m;
 }
@@ -153,15 +155,25 @@ static saddle_ankle_angles_t angles_at_saddle(const saddle_cycle_t *cycle,
 }
 
 /* The angle at which the stance foot leaves the ground, at the saddle via point. */
-static float toe_off_angle_rad(const saddle_cycle_t *cycle, const saddle_model_t *model, float y_m,
-                               float z_m)
+static float toe_off_angle_rad(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                               const place_t *place)
 {
     if (model->config.ankle != SADDLE_ANKLE_CYCLOID) {
         return angles_at_saddle(cycle, model).toe_off_rad;
     }
     saddle_ankle_state_t ankle;
-    saddle_ankle_for_leg(model, length_m(cycle->quarter.length_m, y_m, z_m), true, &ankle);
+    const float leg_m =
+        length_m(cycle->quarter.length_m, place->lateral.value, place->vertical.value);
+    saddle_ankle_for_leg(model, leg_m, true, &ankle);
     return ankle.toe_off_rad;
+}
+
+/* The heel strike after the one under way. */
+static void plan_heel_strike(saddle_cycle_t *cycle, const saddle_model_t *model,
+                             float heel_strike_rad)
+{
+    cycle->next_heel_strike_rad = heel_strike_rad;
+    cycle->next_lead_m = saddle_heel_strike_lead_m(model, heel_strike_rad);
 }
 
 /* The saddle via point: the swing foot has landed and carries from now on. */
@@ -172,10 +184,9 @@ static void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model, sadd
     const float speed_m_s = saddle_speed_to_m_s(speed);
     const float step_y_m = cycle->swing.line_y_m;
     const saddle_vec2_t lifted_m = {-2.0f * length_m, -step_y_m};
-    saddle_sample_t lateral = lateral_at(cycle, length_m);
-    const saddle_sample_t vertical = vertical_at(cycle, model, length_m);
-    cycle->lift_pitch_rad = toe_off_angle_rad(cycle, model, lateral.value, vertical.value);
-    lateral.value -= step_y_m;
+    place_t place = reference_at(cycle, model, SADDLE_PHASE_LANDING); /* no mismatch is left */
+    cycle->lift_pitch_rad = toe_off_angle_rad(cycle, model, &place);
+    place.lateral.value -= step_y_m;
     cycle->last_step_m.x = -lifted_m.x;
     cycle->last_step_m.y = step_y_m;
 
@@ -185,12 +196,13 @@ static void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model, sadd
     cycle->origin_x_nm += 2 * saddle_position_to_nm(cycle->quarter_length);
     cycle->stance_y_m += step_y_m;
     cycle->heel_strike_rad = cycle->next_heel_strike_rad;
-    cycle->next_heel_strike_rad = heel_strike_rad;
-    reshape(cycle, model,
-            saddle_quarter(model, saddle_other_side(cycle->quarter.stance), length_m,
-                           saddle_magnitude(step_y_m), speed_m_s),
-            lateral, vertical);
-    lift_off(cycle, model, lifted_m, speed_m_s);
+    plan_heel_strike(cycle, model, heel_strike_rad);
+    const place_t reference =
+        reshape(cycle, model,
+                saddle_quarter(model, saddle_other_side(cycle->quarter.stance), length_m,
+                               saddle_magnitude(step_y_m), speed_m_s),
+                SADDLE_PHASE_LANDED, &place);
+    lift_off(cycle, model, lifted_m, speed_m_s, reference.lateral);
 }
 
 void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
@@ -198,12 +210,12 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
 {
     const saddle_side_t stance = stance_of_phase(start->phase);
     const float speed_m_s = saddle_speed_to_m_s(start->speed);
-    const saddle_sample_t lateral = {start->com_y_m, 0.0f};
-    const saddle_sample_t vertical = {start->com_z_m, 0.0f};
+    const place_t actual = {{start->com_y_m, 0.0f}, {start->com_z_m, 0.0f}};
     const bool beside = start->phase % 2u == 0u;
+    const saddle_sin_cos_t phase = beside ? SADDLE_PHASE_FOOT : SADDLE_PHASE_LANDED;
     cycle->profile.speed = start->speed;
     cycle->heel_strike_rad = 0.0f;
-    cycle->next_heel_strike_rad = start->heel_strike_rad;
+    plan_heel_strike(cycle, model, start->heel_strike_rad);
     cycle->phase = start->phase;
     cycle->stance_y_m = start->stance_y_m;
     cycle->last_swing = false;
@@ -217,12 +229,12 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
     cycle->quarter = saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
                                     saddle_magnitude(start->other_m.y), speed_m_s);
     cycle->swing.path_width_m = cycle->quarter.width_m;
-    lift_off(cycle, model, start->other_m, speed_m_s);
+    lift_off(cycle, model, start->other_m, speed_m_s, saddle_com_lateral(&cycle->quarter, phase));
     if (beside) {
         cycle->quarter = saddle_quarter(model, stance, cycle->quarter.length_m,
                                         saddle_magnitude(cycle->swing.line_y_m), speed_m_s);
     }
-    reshape(cycle, model, cycle->quarter, lateral, vertical);
+    (void)reshape(cycle, model, cycle->quarter, phase, &actual);
     if (start->under_way) {
         cycle->swing.lift_progress = 0.0f;
         cycle->lateral.length_m = 0.0f;
@@ -346,16 +358,17 @@ static bool landing_usable(const saddle_cycle_t *cycle, const saddle_model_t *mo
            saddle_vec2_dot(com_m, com_m) < reach_m2;
 }
 
-/* The measured landing changed the line: what the swing foot is off it from here on fades out. */
+/* The measured landing changed the line: what the swing foot is off it from here on fades out.
+ * lateral: the new reference. */
 static void redirect_swing(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t foot_m,
-                           float speed_m_s)
+                           float speed_m_s, saddle_sample_t lateral)
 {
     const float x_m = saddle_position_to_m(cycle->position);
     const float fade = 1.0f - saddle_min_jerk(2.0f * air_after_landing(cycle, x_m));
     saddle_swing_t *swing = &cycle->swing;
     swing->line_y_m =
         swing_line_y_m(cycle, model, saddle_other_side(cycle->quarter.stance), speed_m_s);
-    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral_reference(cycle, x_m));
+    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral);
     swing->offset_m.x = (foot_m.x - line.value) / fade;
     swing->offset_m.y = (foot_m.y - swing->line_y_m) / fade;
 }
@@ -380,18 +393,19 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
     }
     const float x_m = old_x_m - dx_m;
     const float length_m = cycle->quarter.length_m * x_m / old_x_m;
-    saddle_sample_t lateral = lateral_at(cycle, old_x_m);
-    lateral.value -= dy_m;
+    const place_t old_reference =
+        reference_at(cycle, model, saddle_quarter_phase(&cycle->quarter, old_x_m));
+    place_t place = place_at(cycle, &old_reference, old_x_m);
+    place.lateral.value -= dy_m;
     if (x_m < LANDING_STRETCH_MAX * old_x_m ||
         length_m > saddle_larger(model->body.half_step_max_m, cycle->quarter.length_m) ||
-        !landing_usable(cycle, model, step_m, (saddle_vec2_t){x_m, lateral.value}) ||
+        !landing_usable(cycle, model, step_m, (saddle_vec2_t){x_m, place.lateral.value}) ||
         (x_m > old_x_m && !can_end(cycle, model, -x_m))) {
         return false;
     }
     saddle_swing_state_t foot;
-    swing_foot(cycle, old_x_m, lateral_reference(cycle, old_x_m),
+    swing_foot(cycle, old_x_m, old_reference.lateral,
                swing_progress(cycle, quarter_progress(cycle, old_x_m)), &foot);
-    const saddle_sample_t vertical = vertical_at(cycle, model, old_x_m);
     const saddle_vec2_t swing_m = {foot.position_m.x - dx_m, foot.position_m.y - dy_m};
     cycle->position = saddle_position_from_m(x_m);
     cycle->quarter_length = saddle_position_from_m(length_m);
@@ -399,10 +413,12 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
     cycle->stance_y_m += dy_m;
     cycle->last_step_m = step_m;
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
-    reshape(cycle, model,
-            saddle_quarter(model, stance, length_m, saddle_magnitude(step_m.y), speed_m_s), lateral,
-            vertical);
-    redirect_swing(cycle, model, swing_m, speed_m_s);
+    const saddle_quarter_t quarter =
+        saddle_quarter(model, stance, length_m, saddle_magnitude(step_m.y), speed_m_s);
+    const saddle_sin_cos_t phase =
+        saddle_quarter_phase(&quarter, saddle_position_to_m(cycle->position));
+    const place_t reference = reshape(cycle, model, quarter, phase, &place);
+    redirect_swing(cycle, model, swing_m, speed_m_s, reference.lateral);
     return true;
 }
 
@@ -425,12 +441,13 @@ static void erf_height(const saddle_cycle_t *cycle, const saddle_model_t *model,
 
 /* The cycloid's height, and the ankles that give it. */
 static void cycloid_height(const saddle_cycle_t *cycle, const saddle_model_t *model,
-                           float speed_m_s, saddle_pose_t *pose)
+                           saddle_sample_t reference, saddle_pose_t *pose)
 {
-    const saddle_sample_t vertical = vertical_at(cycle, model, pose->com_m.x);
+    const saddle_sample_t vertical =
+        sum(reference, saddle_blend_at(&cycle->vertical, pose->com_m.x));
     const saddle_vec3_t *com = &pose->com_m;
     pose->com_m.z = vertical.value;
-    pose->com_velocity_m_s.z = vertical.slope * speed_m_s;
+    pose->com_velocity_m_s.z = vertical.slope * pose->com_velocity_m_s.x;
     pose->ankle_limited = !saddle_ankle_for_leg(model, length_m(com->x, com->y, com->z),
                                                 saddle_cycle_before_landing(cycle), &pose->ankle);
 }
@@ -442,7 +459,7 @@ static float landing_angle_rad(const saddle_cycle_t *cycle, const saddle_model_t
         return angles_at_saddle(cycle, model).heel_strike_rad;
     }
     const saddle_quarter_t *quarter = &cycle->quarter;
-    const float z_m = saddle_cycloid(model, quarter, SADDLE_HALF_PI).value;
+    const float z_m = saddle_cycloid(model, quarter, SADDLE_PHASE_LANDING).value;
     saddle_ankle_state_t ankle;
     saddle_ankle_for_leg(model, length_m(quarter->length_m, 0.5f * quarter->width_m, z_m), false,
                          &ankle);
@@ -461,7 +478,10 @@ static float swing_pitch_rad(const saddle_cycle_t *cycle, const saddle_model_t *
 
 float saddle_cycle_com_y_m(const saddle_cycle_t *cycle)
 {
-    return lateral_at(cycle, saddle_position_to_m(cycle->position)).value;
+    const float x_m = saddle_position_to_m(cycle->position);
+    const saddle_sin_cos_t phase = saddle_quarter_phase(&cycle->quarter, x_m);
+    return saddle_com_lateral(&cycle->quarter, phase).value +
+           saddle_blend_at(&cycle->lateral, x_m).value;
 }
 
 void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
@@ -471,8 +491,9 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
     const float x_m = saddle_position_to_m(cycle->position);
     const float quarter_m = cycle->quarter.length_m;
     const bool before = saddle_cycle_before_landing(cycle);
-    const saddle_sample_t reference = lateral_reference(cycle, x_m);
-    const saddle_sample_t lateral = sum(reference, saddle_blend_at(&cycle->lateral, x_m));
+    const place_t reference =
+        reference_at(cycle, model, saddle_quarter_phase(&cycle->quarter, x_m));
+    const saddle_sample_t lateral = sum(reference.lateral, saddle_blend_at(&cycle->lateral, x_m));
     const float to_saddle_m = before ? quarter_m - x_m : quarter_m + x_m;
     pose->progress = quarter_progress(cycle, x_m);
     pose->com_m.x = x_m;
@@ -480,12 +501,12 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
     pose->com_velocity_m_s.x = speed_m_s;
     pose->com_velocity_m_s.y = lateral.slope * speed_m_s;
     if (model->config.ankle == SADDLE_ANKLE_CYCLOID) {
-        cycloid_height(cycle, model, speed_m_s, pose);
+        cycloid_height(cycle, model, reference.vertical, pose);
     } else {
         erf_height(cycle, model, to_saddle_m, speed_m_s, pose);
     }
     const float progress = swing_progress(cycle, pose->progress);
-    swing_foot(cycle, x_m, reference, progress, &pose->swing);
+    swing_foot(cycle, x_m, reference.lateral, progress, &pose->swing);
     pose->stance_pitch_rad = before ? pose->ankle.toe_off_rad : -pose->ankle.heel_strike_rad;
     pose->swing_pitch_rad = swing_pitch_rad(cycle, model, progress);
 }

@@ -463,8 +463,7 @@ static void write_step_events(const saddle_cycle_t *cycle, const saddle_model_t 
         return;
     }
     const float landing_m = saddle_cycle_before_landing(cycle) ? way_m : way_m + half_step_m;
-    const float lead_m =
-        model->config.cop_range_m * (1.0f - saddle_cos(cycle->next_heel_strike_rad));
+    const float lead_m = cycle->next_lead_m;
     const float heel_m = landing_m > lead_m ? landing_m - lead_m : 0.0f;
     const saddle_pace_t pace = saddle_pace(&cycle->profile);
     plan->time_to_via_point_s = saddle_pace_time_s(&pace, way_m);
@@ -509,8 +508,9 @@ static void write_standing(const saddle_planner_t *planner, const saddle_model_t
     const saddle_side_t stance = planner->cycle.quarter.stance;
     const float duration_s = model->config.shift_time_s;
     const float s = planner->shifting ? (float)planner->shift_us * 1.0e-6f / duration_s : 1.0f;
-    const float share = saddle_min_jerk(s);
-    const float rate_hz = saddle_min_jerk_slope(s) / duration_s;
+    const saddle_jerk_t profile = saddle_min_jerk_both(s);
+    const float share = profile.value;
+    const float rate_hz = profile.slope / duration_s;
     const saddle_vec2_t shift_m = saddle_vec2_sub(planner->shift_to_m, planner->shift_from_m);
     const saddle_vec2_t on_the_way_m =
         saddle_vec2_add(planner->shift_from_m, saddle_vec2_scale(share, shift_m));

@@ -112,7 +112,8 @@ static bool com_frozen(saddle_plausibility_t *plausibility, const saddle_model_t
     const bool unchanged = measurement->com.height_m == plausibility->height_m &&
                            same(measurement->com.velocity_m_s, plausibility->velocity_m_s);
     follow_still(still, unchanged, measurement->com.velocity_m_s, dt_s);
-    plausibility->planned_way_m = unchanged ? plausibility->planned_way_m + planned_m_s * dt_s : 0.0f;
+    plausibility->planned_way_m =
+        unchanged ? plausibility->planned_way_m + planned_m_s * dt_s : 0.0f;
     plausibility->com_contradicted =
         (plausibility->com_contradicted && unchanged) || plausibility->planned_way_m > FROZEN_WAY_M;
     for (int side = 0; side < 2; side++) {
@@ -179,7 +180,8 @@ static uint32_t judge_feet(saddle_plausibility_t *plausibility, const saddle_mod
 }
 
 uint32_t saddle_measurement_check(saddle_plausibility_t *plausibility, const saddle_model_t *model,
-                      const saddle_measurement_t *measurement, float planned_m_s, float dt_s)
+                                  const saddle_measurement_t *measurement, float planned_m_s,
+                                  float dt_s)
 {
     const uint32_t feet =
         judge_foot(model, measurement, SADDLE_LEFT) | judge_foot(model, measurement, SADDLE_RIGHT);

@@ -19,7 +19,8 @@ typedef struct {
     float half_step_slope_s[2];    /**< of the step that each foot makes, [E4] */
     saddle_fixed_t half_step_intercept[2];
     float ankle_work_j;            /**< W_max, [E27] */
-    float foresight_growth;        /**< of a deviation within foresight_s, [E29] */
+    float foresight_growth;        /**< of a deviation within foresight_s, [E29], */
+    float foresight_free_growth;   /**< and of that once the trailing foot has lifted off */
     float com_height_min_m;        /**< a lower CoM is below the knees */
     float crawl_m_s;               /**< a stop goes on at no less until it brakes, */
     float braked_in_a_step_m_s;    /**< and at no more: every step is long enough to brake from it */
@@ -102,6 +103,7 @@ typedef struct {
     float lift_pitch_rad;         /**< of the swing foot when it lifted off */
     float heel_strike_rad;        /**< of the last heel strike */
     float next_heel_strike_rad;   /**< of the next one */
+    float next_lead_m;            /**< of the CoM from there to the saddle via point, [E12] */
     saddle_transition_t transition; /**< of the nearest saddle via point, erf and rigid only */
     saddle_vec2_t last_step_m;    /**< from the old stance foot to the new one */
 } saddle_cycle_t;
