@@ -7,12 +7,36 @@ CHECKOUT = Path(__file__).parents[2]
 TAG = re.compile(r"\[E\d+\]")
 
 
+CORE = CHECKOUT / "firmware/core"
+COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+FUNCTION = re.compile(
+    r"^(?!else |return )[a-z][\w *]*?(\w+)\(([^{};]*?)\)(?: *;|\n\{)", re.MULTILINE
+)
+PARAMETERS_MAX = 5
+
+
 def test_code_and_equations_page_name_the_same_tags_once():
     documented = TAG.findall((CHECKOUT / "docs/equations.md").read_text())
-    sources = (CHECKOUT / "firmware/core").rglob("*.[ch]")
-    used = {tag for source in sources for tag in TAG.findall(source.read_text())}
+    used = {tag for source in CORE.rglob("*.[ch]") for tag in TAG.findall(source.read_text())}
     assert sorted(documented) == sorted(set(documented))
     assert set(documented) == used
+
+
+def test_each_equation_s_tag_stands_where_it_is_computed():
+    """In a source, not only at a declaration or a field."""
+    documented = set(TAG.findall((CHECKOUT / "docs/equations.md").read_text()))
+    computed = {tag for source in CORE.rglob("*.c") for tag in TAG.findall(source.read_text())}
+    assert documented == computed
+
+
+def test_no_function_of_the_core_takes_more_than_five_parameters():
+    counts = {
+        f"{source.name} {name}": parameters.count(",") + 1
+        for source in CORE.rglob("*.[ch]")
+        for name, parameters in FUNCTION.findall(COMMENT.sub("", source.read_text()))
+    }
+    assert len(counts) > 200
+    assert {name: count for name, count in counts.items() if count > PARAMETERS_MAX} == {}
 
 
 def test_readme_shows_the_program_that_is_compiled():

@@ -9,7 +9,8 @@ static saddle_swing_state_t foot_at(const saddle_swing_t *line, float progress, 
                                     saddle_sample_t lateral, float speed_m_s, float rate_hz)
 {
     saddle_swing_state_t foot;
-    saddle_foot_swing(line, progress, x_m, lateral, speed_m_s, rate_hz, &foot);
+    const saddle_swing_place_t place = {progress, rate_hz, x_m, speed_m_s, lateral};
+    saddle_foot_swing(line, &place, &foot);
     return foot;
 }
 

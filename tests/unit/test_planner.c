@@ -1,7 +1,9 @@
 /** The plan against eq:01 to eq:08 as functions of time, in double; start, stop, feet, events. */
 #include "core_test.h"
 
+#include "motion/plan_output.h"
 #include "motion/planner.h"
+#include "motion/standing.h"
 
 /* Metres, rad, m/s: floats of order 1 in a chain of ten operations. */
 static const double TOLERANCE = 5e-6;
@@ -27,7 +29,7 @@ static uint32_t tick(uint32_t dt_us)
 {
     const uint32_t limits =
         saddle_planner_update(&planner, model_of(&config), &command, &feet, dt_us);
-    return limits | saddle_planner_write(&planner, model_of(&config), &plan);
+    return limits | saddle_plan_write(&planner, model_of(&config), &plan);
 }
 
 /* A steady walk from the left foot via point. */

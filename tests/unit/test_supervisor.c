@@ -61,15 +61,21 @@ static uint32_t update_with(uint32_t faults)
     scores.bos.defined = true;
     scores.can_stop = true;
     scores.paper_stable = true;
-    return saddle_supervisor_update(&supervisor, model_of(&config), &measured, faults, DT_S, &intent,
-                                    &scores, &verdict);
+    const saddle_sensed_t sensed = {&measured, faults, DT_S};
+    saddle_output_t output = {.scores = scores, .verdict = verdict};
+    const uint32_t said =
+        saddle_supervisor_update(&supervisor, model_of(&config), &sensed, &intent, &output);
+    scores = output.scores;
+    verdict = output.verdict;
+    return said;
 }
 
 /* Each measurement by itself: none is frozen. */
 static uint32_t update(void)
 {
     memset(&plausibility, 0, sizeof plausibility);
-    return update_with(saddle_measurement_check(&plausibility, model_of(&config), &measured, 0.0f, DT_S));
+    return update_with(
+        saddle_measurement_check(&plausibility, model_of(&config), &measured, 0.0f, DT_S));
 }
 
 static const uint32_t UNTIL_STEP = (uint32_t)SADDLE_VALID_ALL & ~(uint32_t)SADDLE_VALID_STEP;

@@ -4,7 +4,7 @@
 #include "output_fields.h"
 
 #include "math/vec2.h"
-#include "motion/planner.h"
+#include "motion/plan_output.h"
 
 static saddle_config_t config;
 static saddle_context_t context;
@@ -708,7 +708,7 @@ static void test_plan_at_beyond_its_span_is_refused(void)
     TEST_ASSERT_FALSE(plan.valid);
     join();
     tick_at(1000000);
-    const uint64_t end = 1000000u + saddle_planner_horizon_us(&context.planner);
+    const uint64_t end = 1000000u + saddle_plan_horizon_us(&context.planner);
     TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME, saddle_plan_at(&context, 999999, &plan));
     TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_plan_at(&context, 1000000, &plan));
     TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_plan_at(&context, end, &plan));

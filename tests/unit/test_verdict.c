@@ -183,8 +183,13 @@ static uint32_t update(uint32_t faults)
     verdict.on_track = true;
     verdict.recovery.found = true;
     verdict.recovery.stops = true;
-    return saddle_supervisor_update(&supervisor, model_of(&config), &measured, faults, DT_S, &intent,
-                                    &scores, &verdict);
+    const saddle_sensed_t sensed = {&measured, faults, DT_S};
+    saddle_output_t output = {.scores = scores, .verdict = verdict};
+    const uint32_t said =
+        saddle_supervisor_update(&supervisor, model_of(&config), &sensed, &intent, &output);
+    scores = output.scores;
+    verdict = output.verdict;
+    return said;
 }
 
 static void assert_verdict(saddle_level_t level, saddle_reason_t reason)

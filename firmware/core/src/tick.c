@@ -5,7 +5,9 @@
 #include "math/rounding.h"
 #include "math/vec2.h"
 #include "model/model.h"
+#include "motion/plan_output.h"
 #include "motion/planner.h"
+#include "motion/standing.h"
 #include "sense/plausibility.h"
 #include "sense/safe_state.h"
 
@@ -131,25 +133,23 @@ static saddle_intent_t intent_of(const saddle_plan_t *plan)
 }
 
 /* The plan under the command, or under a stand where the inputs are lost. */
-static void plan_walk(saddle_context_t *context, const saddle_input_t *input, uint32_t faults,
-                      bool stop, uint32_t dt_us, saddle_output_t *output)
+static void plan_walk(saddle_context_t *context, const saddle_feet_t *feet, bool stop,
+                      uint32_t dt_us, saddle_output_t *output)
 {
     static const saddle_command_t stand = {(uint8_t)SADDLE_COMMAND_STAND, 0.0f, 0.0f};
-    const saddle_feet_t feet = measured_feet(&input->measurement, faults);
     output->limits |= stop ? (uint32_t)SADDLE_LIMIT_SAFE_STOP : 0u;
     output->limits |= saddle_planner_update(&context->planner, &context->model,
-                                            stop ? &stand : &context->command, &feet, dt_us);
-    output->limits |= saddle_planner_write(&context->planner, &context->model, &output->plan);
+                                            stop ? &stand : &context->command, feet, dt_us);
+    output->limits |= saddle_plan_write(&context->planner, &context->model, &output->plan);
 }
 
 /* The measured posture against the plan. */
-static void supervise(saddle_context_t *context, const saddle_input_t *input, uint32_t faults,
-                      float dt_s, saddle_output_t *output)
+static void supervise(saddle_context_t *context, const saddle_sensed_t *sensed,
+                      saddle_output_t *output)
 {
     const saddle_intent_t intent = intent_of(&output->plan);
     output->faults |=
-        saddle_supervisor_update(&context->supervisor, &context->model, &input->measurement, faults,
-                                 dt_s, &intent, &output->scores, &output->verdict);
+        saddle_supervisor_update(&context->supervisor, &context->model, sensed, &intent, output);
     output->walk = context->supervisor.learning.walk;
 }
 
@@ -168,15 +168,16 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     output->status = SADDLE_OK;
     output->limits = 0;
     const uint32_t dt_us = elapsed_us(context, input->time_us, &output->limits);
-    const float dt_s = (float)dt_us * 1.0e-6f;
-    const uint32_t faults =
-        saddle_measurement_check(&context->plausibility, &context->model, &input->measurement,
-                     saddle_planner_speed_m_s(&context->planner), dt_s);
+    saddle_sensed_t sensed = {&input->measurement, 0, (float)dt_us * 1.0e-6f};
+    sensed.faults =
+        saddle_measurement_check(&context->plausibility, &context->model, sensed.measurement,
+                                 saddle_planner_speed_m_s(&context->planner), sensed.dt_s);
     output->faults = take_command(context, input);
     const bool stop = saddle_safe_state_update(&context->safe_state, &context->model,
-                                               faults | output->faults, dt_s);
-    plan_walk(context, input, faults, stop, dt_us, output);
-    supervise(context, input, faults, dt_s, output);
+                                               sensed.faults | output->faults, sensed.dt_s);
+    const saddle_feet_t feet = measured_feet(sensed.measurement, sensed.faults);
+    plan_walk(context, &feet, stop, dt_us, output);
+    supervise(context, &sensed, output);
     return SADDLE_OK;
 }
 
@@ -222,13 +223,13 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
         return SADDLE_ERROR_UNINITIALISED;
     }
     if (!context->ticked || time_us < context->last_time_us ||
-        time_us - context->last_time_us > saddle_planner_horizon_us(&context->planner)) {
+        time_us - context->last_time_us > saddle_plan_horizon_us(&context->planner)) {
         return SADDLE_ERROR_TIME;
     }
     saddle_planner_t planner;
     saddle_copy(&planner, &context->planner, sizeof planner);
     advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
-    saddle_planner_write(&planner, &context->model, plan);
+    saddle_plan_write(&planner, &context->model, plan);
     return SADDLE_OK;
 }
 

@@ -1,7 +1,6 @@
 #include "balance/comparison.h"
 
 #include "balance/recovery_step.h"
-#include "balance/saddle_space.h"
 #include "balance/stability_scores.h"
 #include "math/elementary.h"
 #include "math/fixed.h"

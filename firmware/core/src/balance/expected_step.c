@@ -31,6 +31,7 @@ static saddle_com_state_t state_at_saddle(const saddle_quarter_t *quarter, float
     return state;
 }
 
+/* [E28] */
 saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
                                    float x_m)
 {
@@ -56,6 +57,7 @@ saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_ste
     return expected;
 }
 
+/* [E29] */
 saddle_growth_t saddle_growth(const saddle_model_t *model, float time_s, bool trailing)
 {
     const saddle_body_t *body = &model->body;
@@ -70,6 +72,7 @@ saddle_growth_t saddle_growth(const saddle_model_t *model, float time_s, bool tr
     return growth;
 }
 
+/* [E29] */
 float saddle_grown_m(float com_m, float xcom_m, const saddle_growth_t *growth)
 {
     const float receding_m = 2.0f * com_m - xcom_m;

@@ -88,8 +88,8 @@ static void learn_ripple(saddle_learning_t *learning, const saddle_model_t *mode
                          (SADDLE_GRAVITY_M_S2 * learning->walk.height_m);
     const float most = RIPPLE_GROWTH_MAX * learning->ripple_square;
     const float share = share_of_new(&learning->walked_s, dt_s, model->config.learn_ripple_time_s);
-    learning->ripple_square += share * (saddle_clamp(square, RIPPLE_MIN * RIPPLE_MIN, most) -
-                                        learning->ripple_square);
+    learning->ripple_square +=
+        share * (saddle_clamp(square, RIPPLE_MIN * RIPPLE_MIN, most) - learning->ripple_square);
     learning->walk.ripple = sqrtf(learning->ripple_square);
 }
 

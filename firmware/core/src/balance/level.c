@@ -133,8 +133,7 @@ static saddle_reason_t announced_reason(const saddle_level_state_t *state, decis
 
 /* A level is announced once it, or a worse one, has held for long enough, a better one likewise;
  * unknown at once. */
-static void announce(saddle_level_state_t *state, const saddle_model_t *model,
-                     decision_t decision)
+static void announce(saddle_level_state_t *state, const saddle_model_t *model, decision_t decision)
 {
     count_levels(state, (uint8_t)decision.level);
     if (decision.level == SADDLE_LEVEL_CAUTION) {
@@ -148,9 +147,8 @@ static void announce(saddle_level_state_t *state, const saddle_model_t *model,
     state->reason = (uint8_t)announced_reason(state, decision);
 }
 
-void saddle_level_update(saddle_level_state_t *state, const saddle_model_t *model,
-                         uint32_t faults, const saddle_scores_t *scores,
-                         saddle_verdict_t *verdict)
+void saddle_level_update(saddle_level_state_t *state, const saddle_model_t *model, uint32_t faults,
+                         const saddle_scores_t *scores, saddle_verdict_t *verdict)
 {
     decision_t decision = decide(verdict);
     if (model->config.previous_level > 0.5f) {

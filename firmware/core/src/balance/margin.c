@@ -23,19 +23,18 @@ saddle_departure_t saddle_departure(const saddle_model_t *model, const saddle_le
     const saddle_vec2_t right_m = measurement->foot[SADDLE_RIGHT].cop_m;
     const float per_height = 1.0f / walk->height_m;
     const float per_speed = 1.0f / sqrtf(SADDLE_GRAVITY_M_S2 * walk->height_m);
-    const saddle_vec2_t from_middle_m =
-        saddle_vec2_scale(-0.5f, saddle_vec2_add(left_m, right_m));
+    const saddle_vec2_t from_middle_m = saddle_vec2_scale(-0.5f, saddle_vec2_add(left_m, right_m));
     const saddle_vec2_t unusual_m_s =
         saddle_vec2_sub(measurement->com.velocity_m_s, walk->velocity_m_s);
     const float apart_m = saddle_vec2_length(saddle_vec2_sub(left_m, right_m));
     saddle_departure_t departure;
-    departure.offset = saddle_vec2_add(
-        saddle_vec2_scale(per_height, from_middle_m),
-        saddle_vec2_scale(config->departure_foresight * per_speed, unusual_m_s));
+    departure.offset =
+        saddle_vec2_add(saddle_vec2_scale(per_height, from_middle_m),
+                        saddle_vec2_scale(config->departure_foresight * per_speed, unusual_m_s));
     departure.offset.y *= config->departure_lateral_weight;
     departure.step = 0.5f * config->departure_step_share * apart_m * per_height;
-    departure.sink = config->departure_sink_share * per_speed *
-                     saddle_larger(0.0f, -learning->climb_m_s);
+    departure.sink =
+        config->departure_sink_share * per_speed * saddle_larger(0.0f, -learning->climb_m_s);
     return departure;
 }
 
@@ -47,7 +46,7 @@ static float tolerance(const saddle_config_t *config, float ripple)
 }
 
 float saddle_own_margin(const saddle_model_t *model, const saddle_learning_t *learning,
-                         const saddle_departure_t *departure)
+                        const saddle_departure_t *departure)
 {
     return tolerance(&model->config, learning->walk.ripple) -
            (saddle_vec2_length(departure->offset) - departure->step + departure->sink);
@@ -86,7 +85,6 @@ float saddle_caution_below(const saddle_model_t *model, const saddle_learning_t 
 {
     const float usual = learning->walk.step_margin;
     const float band = model->config.caution_margin;
-    return usual > 0.0f
-               ? saddle_clamp(OWN_CAUTION_SHARE * usual, LEAST_CAUTION_SHARE * band, band)
-               : band;
+    return usual > 0.0f ? saddle_clamp(OWN_CAUTION_SHARE * usual, LEAST_CAUTION_SHARE * band, band)
+                        : band;
 }

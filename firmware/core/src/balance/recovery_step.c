@@ -46,6 +46,7 @@ static bool stops_at(const saddle_model_t *model, saddle_vec2_t xcom_m, saddle_v
     return bos.defined && saddle_bos_margin_m(&bos, xcom_m) >= 0.0f;
 }
 
+/* [E30] */
 void saddle_recovery_step(const saddle_model_t *model, const saddle_recovery_target_t *target,
                           saddle_recovery_t *recovery)
 {
@@ -76,6 +77,7 @@ void saddle_recovery_step(const saddle_model_t *model, const saddle_recovery_tar
     }
 }
 
+/* [E30] */
 float saddle_least_deviation_m(float deviation_m, saddle_cop_shift_t shift,
                                const saddle_growth_t *growth)
 {

@@ -23,6 +23,7 @@ saddle_bos_t saddle_bos_undefined(void)
     return bos;
 }
 
+/* [E15] [E16] */
 saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m, float factor)
 {
     const saddle_vec2_t left = cop_m[SADDLE_LEFT];
@@ -64,6 +65,7 @@ static float edge_half_length_m(const saddle_bos_t *bos)
     return square > 0.0f ? sqrtf(square) : 0.0f;
 }
 
+/* [E17] */
 float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m)
 {
     const saddle_vec2_t place_m = to_saddle(bos, saddle_vec2_sub(point_m, bos->centre_m));
@@ -125,6 +127,7 @@ static saddle_vec2_t nearest_border_m(const saddle_bos_t *bos, saddle_vec2_t pla
     return border_m;
 }
 
+/* [E26] */
 saddle_vec2_t saddle_bos_exit_m(const saddle_bos_t *bos, saddle_vec2_t point_m,
                                 saddle_vec2_t direction_m_s)
 {

@@ -21,6 +21,7 @@ static void score_steps(const saddle_model_t *model, const saddle_posture_t *pos
     scores->valid |= (uint32_t)SADDLE_VALID_STEP;
 }
 
+/* [E27] */
 static void score_energy(const saddle_model_t *model, const saddle_posture_t *posture,
                          const saddle_surface_t *at_com, saddle_scores_t *scores)
 {

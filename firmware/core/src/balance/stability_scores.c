@@ -1,5 +1,6 @@
 #include "balance/stability_scores.h"
 
+/* [E19] */
 saddle_vec2_t saddle_xcom_m(saddle_vec2_t com_m, saddle_vec2_t com_velocity_m_s,
                             float natural_frequency_rad_s)
 {
@@ -9,11 +10,13 @@ saddle_vec2_t saddle_xcom_m(saddle_vec2_t com_m, saddle_vec2_t com_velocity_m_s,
     return xcom_m;
 }
 
+/* [E20] */
 float saddle_step_score(float half_step_m, float reference_m, float bound_m)
 {
     return (half_step_m - bound_m) / (reference_m - bound_m);
 }
 
+/* [E21] */
 float saddle_width_score(float offset_from_midline_m, float step_width_m)
 {
     const float offset_m =

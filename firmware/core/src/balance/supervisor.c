@@ -3,6 +3,7 @@
 #include "balance/learned_walk.h"
 #include "balance/level.h"
 #include "balance/margin.h"
+#include "balance/saddle_space.h"
 #include "balance/scores.h"
 #include "sense/step_tracker.h"
 
@@ -15,8 +16,7 @@ void saddle_supervisor_init(saddle_supervisor_t *supervisor, const saddle_model_
  * From then on they are what somebody does who is about to fall. */
 static uint32_t missing(const saddle_supervisor_t *supervisor, uint32_t faults)
 {
-    const uint32_t evidence =
-        (uint32_t)SADDLE_FAULT_AIRBORNE | (uint32_t)SADDLE_FAULT_FEET_CROSSED;
+    const uint32_t evidence = (uint32_t)SADDLE_FAULT_AIRBORNE | (uint32_t)SADDLE_FAULT_FEET_CROSSED;
     const bool seen = supervisor->level.level != (uint8_t)SADDLE_LEVEL_UNKNOWN;
     return seen ? faults & ~evidence : faults;
 }
@@ -52,10 +52,14 @@ void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s)
 }
 
 uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_model_t *model,
-                                  const saddle_measurement_t *measurement, uint32_t faults,
-                                  float dt_s, const saddle_intent_t *intent,
-                                  saddle_scores_t *scores, saddle_verdict_t *verdict)
+                                  const saddle_sensed_t *sensed, const saddle_intent_t *intent,
+                                  saddle_output_t *output)
 {
+    const saddle_measurement_t *measurement = sensed->measurement;
+    const uint32_t faults = sensed->faults;
+    const float dt_s = sensed->dt_s;
+    saddle_scores_t *scores = &output->scores;
+    saddle_verdict_t *verdict = &output->verdict;
     saddle_step_tracker_t *steps = &supervisor->steps;
     saddle_track_steps(steps, model, measurement, faults, dt_s);
     const uint32_t missing_inputs = missing(supervisor, faults);

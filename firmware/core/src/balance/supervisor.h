@@ -13,12 +13,19 @@ void saddle_supervisor_init(saddle_supervisor_t *supervisor, const saddle_model_
 /** What happened in the last gap_s is not known: no level holds over it. */
 void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s);
 
-/** Follow the steps, score the posture in the frame of the CoM and give the verdict. While a plan has
- *  both feet stand there is no walk to score: v_comp_m_s, the step scores and s_sw are not valid.
- *  faults: what saddle_judge() said. Returns the faults and those of the scores. */
+/** A measurement after saddle_measurement_check(). */
+typedef struct {
+    const saddle_measurement_t *measurement;
+    uint32_t faults; /**< saddle_fault_t bits */
+    float dt_s;      /**< since the one before */
+} saddle_sensed_t;
+
+/** Follow the steps, score the posture in the frame of the CoM and give the verdict: writes scores and
+ *  verdict of *output, and reads none of it. While a plan has both feet stand there is no walk to
+ *  score: v_comp_m_s, the step scores and s_sw are not valid. Returns the faults, those of the scores
+ *  among them. */
 uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_model_t *model,
-                                  const saddle_measurement_t *measurement, uint32_t faults,
-                                  float dt_s, const saddle_intent_t *intent,
-                                  saddle_scores_t *scores, saddle_verdict_t *verdict);
+                                  const saddle_sensed_t *sensed, const saddle_intent_t *intent,
+                                  saddle_output_t *output);
 
 #endif

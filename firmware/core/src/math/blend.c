@@ -15,6 +15,7 @@ saddle_blend_t saddle_blend(saddle_sample_t actual, saddle_sample_t reference, f
     return blend;
 }
 
+/* [E22] */
 saddle_sample_t saddle_blend_at(const saddle_blend_t *blend, float place_m)
 {
     saddle_sample_t mismatch = {0.0f, 0.0f};

@@ -157,11 +157,13 @@ static float field_value(const saddle_config_t *config, const saddle_config_fiel
     return *(const float *)(const void *)((const char *)config + field->offset);
 }
 
+/* [E4] */
 float saddle_regressed_half_step_m(const saddle_config_t *config, float speed_m_s)
 {
     return config->half_step_slope_s * speed_m_s + config->half_step_intercept_m;
 }
 
+/* [E3] */
 float saddle_regressed_width_m(const saddle_config_t *config, float speed_m_s)
 {
     return config->step_width_slope_s * speed_m_s + config->step_width_intercept_m;

@@ -8,6 +8,7 @@
  * stance foot. */
 #define WIDTH_MIN_M 0.02f
 
+/* [E3] */
 float saddle_step_width_m(const saddle_model_t *model, float speed_m_s)
 {
     if (speed_m_s < model->config.step_width_slow_speed_m_s) {
@@ -19,6 +20,7 @@ float saddle_step_width_m(const saddle_model_t *model, float speed_m_s)
     return saddle_regressed_width_m(&model->config, speed_m_s);
 }
 
+/* [E5] [E7] */
 saddle_quarter_t saddle_quarter(const saddle_model_t *model, saddle_side_t stance, float length_m,
                                 float width_m, float speed_m_s)
 {
@@ -36,6 +38,7 @@ saddle_quarter_t saddle_quarter(const saddle_model_t *model, saddle_side_t stanc
     return quarter;
 }
 
+/* [E4] */
 saddle_fixed_t saddle_half_step(const saddle_model_t *model, saddle_side_t foot,
                                 saddle_fixed_t speed)
 {
@@ -43,6 +46,7 @@ saddle_fixed_t saddle_half_step(const saddle_model_t *model, saddle_side_t foot,
                                model->body.half_step_intercept[foot]);
 }
 
+/* [E3] */
 float saddle_landing_y_m(const saddle_model_t *model, saddle_side_t foot, float speed_m_s)
 {
     const float half_width_m = 0.5f * saddle_step_width_m(model, speed_m_s);
@@ -50,6 +54,7 @@ float saddle_landing_y_m(const saddle_model_t *model, saddle_side_t foot, float 
                                : -model->config.step_width_factor_right * half_width_m;
 }
 
+/* [E6] */
 saddle_step_bounds_t saddle_step_bounds(const saddle_model_t *model, float speed_m_s)
 {
     saddle_step_bounds_t bounds;

@@ -23,7 +23,7 @@ static float us_of_s(float time_s)
     return time_s * 1.0e6f;
 }
 
-/* Where the regression, on the side of the longer steps, meets the reach, or the XCoM limit
+/* [E6] Where the regression, on the side of the longer steps, meets the reach, or the XCoM limit
  * v / (2 w_n) if that comes first. */
 static float speed_ceiling_m_s(const saddle_config_t *config, const saddle_body_t *body)
 {
@@ -55,6 +55,7 @@ static float braked_in_a_step_m_s(const saddle_config_t *config)
            (by_slope_m_s + sqrtf(by_slope_m_s * by_slope_m_s + by_intercept_m2_s2));
 }
 
+/* [E1] [E2] [E4] [E6] */
 static void derive_walk(const saddle_config_t *config, saddle_body_t *body)
 {
     const float factors[2] = {config->step_length_factor_left, config->step_length_factor_right};
@@ -76,6 +77,7 @@ static void derive_stop(const saddle_config_t *config, saddle_body_t *body)
     body->braked_in_a_tick_m_s = config->acceleration_m_s2 * config->tick_max_s;
 }
 
+/* [E27] [E29] */
 static void derive_balance(const saddle_config_t *config, saddle_body_t *body)
 {
     body->ankle_work_j = config->ankle_work_factor * config->body_mass_kg * SADDLE_GRAVITY_M_S2 *

@@ -22,6 +22,7 @@ static float toe_off_elongation_m(const saddle_model_t *model, const saddle_quar
     return sqrtf(height_m * height_m + x_m * x_m + y_m * y_m) - model->body.pendulum_m;
 }
 
+/* [E12] */
 float saddle_heel_strike_lead_m(const saddle_model_t *model, float heel_strike_rad)
 {
     return model->config.cop_range_m * (1.0f - saddle_cos(heel_strike_rad));
@@ -52,6 +53,7 @@ static void at_rest(const saddle_model_t *model, saddle_ankle_state_t *ankle)
     ankle->limited = false;
 }
 
+/* [E12] */
 saddle_ankle_angles_t saddle_ankle_angles(const saddle_model_t *model,
                                           const saddle_transition_t *transition,
                                           float since_strike_s)
@@ -89,6 +91,7 @@ void saddle_ankle(const saddle_model_t *model, const saddle_transition_t *transi
     ankle->leg_rate_m_s = model->config.cop_range_m * saddle_cos(0.5f * angle_rad) * angle_rate;
 }
 
+/* [E14] */
 void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m,
                        saddle_vec2_t velocity_m_s, float *height_m, float *height_rate_m_s)
 {
@@ -101,6 +104,7 @@ void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m
                        height;
 }
 
+/* [E24] */
 saddle_sample_t saddle_cycloid(const saddle_model_t *model, const saddle_quarter_t *quarter,
                                saddle_sin_cos_t phase)
 {
@@ -113,6 +117,7 @@ saddle_sample_t saddle_cycloid(const saddle_model_t *model, const saddle_quarter
     return height;
 }
 
+/* [E25] */
 bool saddle_ankle_for_leg(const saddle_model_t *model, float leg_length_m, bool toe_off_acts,
                           saddle_ankle_state_t *ankle)
 {

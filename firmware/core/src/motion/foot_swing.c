@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+/* [E9] */
 saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle_sample_t lateral)
 {
     const float rise_m = lateral.value;
@@ -14,7 +15,7 @@ saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle
     return line;
 }
 
-/* Rises and sinks by one minimum-jerk profile each. air: 0 at lift-off, 1 at landing. */
+/* [E10] Rises and sinks by one minimum-jerk profile each. air: 0 at lift-off, 1 at landing. */
 static void swing_height(float air, float air_rate_hz, float clearance_m,
                          saddle_swing_state_t *foot)
 {
@@ -26,20 +27,20 @@ static void swing_height(float air, float air_rate_hz, float clearance_m,
     foot->velocity_m_s.z = clearance_m * rise.slope * rate_hz;
 }
 
-void saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
-                       saddle_sample_t lateral, float speed_m_s, float rate_hz,
+/* [E9] */
+void saddle_foot_swing(const saddle_swing_t *swing, const saddle_swing_place_t *place,
                        saddle_swing_state_t *foot)
 {
     const float duration = swing->land_progress - swing->lift_progress;
-    const float air = saddle_clamp((progress - swing->lift_progress) / duration, 0.0f, 1.0f);
-    const float air_rate_hz = rate_hz / duration;
+    const float air = saddle_clamp((place->progress - swing->lift_progress) / duration, 0.0f, 1.0f);
+    const float air_rate_hz = place->rate_hz / duration;
     const saddle_jerk_t return_to_line = saddle_min_jerk_both(2.0f * air);
     const float fade = 1.0f - return_to_line.value;
     const float fade_rate_hz = -2.0f * return_to_line.slope * air_rate_hz;
-    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral);
+    const saddle_sample_t line = saddle_swing_line(swing, place->x_m, place->lateral);
     foot->position_m.x = line.value + swing->offset_m.x * fade;
     foot->position_m.y = swing->line_y_m + swing->offset_m.y * fade;
-    foot->velocity_m_s.x = line.slope * speed_m_s + swing->offset_m.x * fade_rate_hz;
+    foot->velocity_m_s.x = line.slope * place->speed_m_s + swing->offset_m.x * fade_rate_hz;
     foot->velocity_m_s.y = swing->offset_m.y * fade_rate_hz;
     swing_height(air, air_rate_hz, swing->clearance_m, foot);
 }

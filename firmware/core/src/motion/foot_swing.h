@@ -14,10 +14,15 @@ typedef struct {
  *  reference. */
 saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle_sample_t lateral);
 
-/** [E9] [E10] The foot at a progress; x_m, lateral as above; speed_m_s that of the CoM and
- *  rate_hz that of the progress. */
-void saddle_foot_swing(const saddle_swing_t *swing, float progress, float x_m,
-                       saddle_sample_t lateral, float speed_m_s, float rate_hz,
+/** Where a swing is. */
+typedef struct {
+    float progress, rate_hz; /**< its rate of change */
+    float x_m, speed_m_s;    /**< of the CoM */
+    saddle_sample_t lateral; /**< its reference */
+} saddle_swing_place_t;
+
+/** [E9] [E10] The foot. */
+void saddle_foot_swing(const saddle_swing_t *swing, const saddle_swing_place_t *place,
                        saddle_swing_state_t *foot);
 
 #endif

@@ -336,8 +336,14 @@ static void swing_foot(const saddle_cycle_t *cycle, float x_m, saddle_sample_t r
                        float progress, saddle_swing_state_t *foot)
 {
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
-    saddle_foot_swing(&cycle->swing, progress, x_m, reference, speed_m_s,
-                      0.5f * speed_m_s / cycle->quarter.length_m, foot);
+    const saddle_swing_place_t place = {
+        .progress = progress,
+        .rate_hz = 0.5f * speed_m_s / cycle->quarter.length_m,
+        .x_m = x_m,
+        .speed_m_s = speed_m_s,
+        .lateral = reference,
+    };
+    saddle_foot_swing(&cycle->swing, &place, foot);
 }
 
 /* Progress of the running swing through the air, in the quarter after a landing. */

@@ -2,14 +2,9 @@
 #ifndef SADDLEWALK_PLANNER_H
 #define SADDLEWALK_PLANNER_H
 
-#include <saddlewalk/private/context.h>
+#include "motion/standing.h"
 
-/** Feet as they were measured. */
-typedef struct {
-    bool known;
-    saddle_vec2_t cop_m[2]; /**< in any one frame with x forward and y left */
-    bool contact[2];
-} saddle_feet_t;
+#include <saddlewalk/private/context.h>
 
 /** Standing, feet side by side at the width of slow walking, CoM between them. */
 void saddle_planner_reset(saddle_planner_t *planner, const saddle_model_t *model);
@@ -29,11 +24,5 @@ void saddle_planner_advance(saddle_planner_t *planner, const saddle_model_t *mod
 
 /** Speed of the walk; 0 while both feet stand. */
 float saddle_planner_speed_m_s(const saddle_planner_t *planner);
-
-/** How far saddle_planner_advance() may go in one call: to the end of the next step, 0.5 s standing. */
-uint32_t saddle_planner_horizon_us(const saddle_planner_t *planner);
-
-/** The plan of the present state. Returns SADDLE_LIMIT_TOE_OFF or 0. */
-uint32_t saddle_planner_write(const saddle_planner_t *planner, const saddle_model_t *model, saddle_plan_t *plan);
 
 #endif

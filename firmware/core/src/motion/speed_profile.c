@@ -11,6 +11,7 @@
 /* A target that is not approached. */
 #define WAY_NEVER_M 1.0e9f
 
+/* [E23] */
 saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t dt_us)
 {
     const float rate_m_s2 = saddle_clamp(profile->rate_m_s2, 0.0f, RATE_MAX_M_S2);
