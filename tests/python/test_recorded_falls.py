@@ -221,6 +221,8 @@ def test_emulated_wearers_stand_beside_recorded_walkers(folder, tmp_path):
     assert found["emulated_planned"]["pushed"] == 4
     assert 0.2 < found["emulated_planned"]["calm"]["minutes"] < 0.5
     assert (tmp_path / "walks.csv").exists()
+    assert "left_out" in found["twin"]
+    assert (tmp_path / "reliability.png").read_bytes().startswith(b"\x89PNG")
 
 
 # One walk of 101 ticks with a push at 4 s, and what was said of it.

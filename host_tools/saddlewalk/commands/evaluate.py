@@ -7,7 +7,7 @@ import itertools
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
     from saddlewalk.evaluation.detection import Detection
     from saddlewalk.evaluation.gait_trials import GaitTrial
+    from saddlewalk.evaluation.left_out import LeftOut
     from saddlewalk.evaluation.recorded_falls import Scored as ScoredWalk
+    from saddlewalk.evaluation.scoring import Score
     from saddlewalk.evaluation.walks import Walk
 
 WALKS = 1000
@@ -30,10 +32,26 @@ KINDS_DRAWN = ("misses", "false-alarms")
 DRAWN = 10  # of the worst misses, and of the worst false alarms
 EMULATED_FILES = ("evaluation.json", "walks.csv", "roc.png", "region.png")
 FALLS_FILES = ("falls.csv", "falls-roc.png")
+RELIABILITY = "reliability.png"
 DRAWINGS = {kind: [f"{kind}/{k + 1:02}.png" for k in range(DRAWN)] for kind in KINDS_DRAWN}
-FILES = ("scores.json", *EMULATED_FILES, *FALLS_FILES, *itertools.chain(*DRAWINGS.values()))
+FILES = (
+    "scores.json",
+    RELIABILITY,
+    *EMULATED_FILES,
+    *FALLS_FILES,
+    *itertools.chain(*DRAWINGS.values()),
+)
 Figures = Mapping[str, Any]
 Writer = Callable[[Path], Iterable[str]]  # to a new folder; gives names and what they show
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some walkers by name: their figures, their scores on exact inputs, and what writes files."""
+
+    figures: dict[str, Figures]
+    scores: dict[str, Sequence["Score"]]
+    write: Writer
 
 
 def add_parser(subparsers: Any) -> None:
@@ -82,37 +100,43 @@ def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
     from saddlewalk.evaluation.gait_trials import judge_folder
+    from saddlewalk.evaluation.left_out import leave_one_out, table
 
     console = Console(stderr=args.json == "-")
     config = load_config(args)
     trials = judge_folder(args.gait, config) if args.gait else []
-    results: dict[str, Figures] = {}
-    writers: list[Writer] = []
+    parts = []
     if args.walks or not args.falls:
-        figures, writer = _emulate(console, args, config, trials)
-        results |= figures
-        writers.append(writer)
+        parts.append(_emulate(console, args, config, trials))
     if args.falls:
-        figures, writer = _score_falls(args)
-        results |= figures
-        writers.append(writer)
+        parts.append(_score_falls(args))
+    results = {name: figures for part in parts for name, figures in part.figures.items()}
     if trials:
         results |= _tell_trials(console, trials)
     _tell_side_by_side(console, results)
-    text = _json(results)
+    found = leave_one_out({name: each for part in parts for name, each in part.scores.items()})
+    if found:
+        console.print(table(found))
+    text = _json({name: {**each, **_left_out(found.get(name))} for name, each in results.items()})
     if args.json:
         write_text("--json", args.json, text)
     if args.out:
-        _write(console, args.out, [*writers, functools.partial(_write_scores, text)])
+        writers = [part.write for part in parts]
+        _write(console, args.out, [*writers, functools.partial(_write_scores, text, found)])
     return 0
+
+
+def _left_out(found: "LeftOut | None") -> dict[str, Any]:
+    return {"left_out": asdict(found)} if found else {}
 
 
 def _emulate(
     console: "Console", args: argparse.Namespace, config: Any, trials: Sequence["GaitTrial"]
-) -> tuple[dict[str, Figures], Writer]:
-    """Walk, and tell about the emulated wearer; its figures by kind, and what writes its files."""
+) -> Part:
+    """Walk, and tell about the emulated wearer, by kind."""
     from saddlewalk.evaluation.detection import detection_of, push_limits, recovery_worth
     from saddlewalk.evaluation.region import CLAIMS, POSTURES, explore, grid
+    from saddlewalk.evaluation.side_by_side import walker_figures
     from saddlewalk.evaluation.walks import KINDS
 
     count = args.walks or WALKS
@@ -142,20 +166,23 @@ def _emulate(
         "region": confusions,
         "gait": [asdict(trial) for trial in trials],
     }
-    figures = {f"emulated_{kind}": _emulated_figures(args, by_kind[kind]) for kind in KINDS}
-    return figures, functools.partial(_write_emulated, result, walks, config)
+    given = {name: str(value) for name, value in given_fields(args).items()}
+    scores = {f"emulated_{kind}": _scores_by_inputs(by_kind[kind]) for kind in KINDS}
+    return Part(
+        {name: walker_figures(each, given) for name, each in scores.items()},
+        {name: each["exact"] for name, each in scores.items()},
+        functools.partial(_write_emulated, result, walks, config),
+    )
 
 
-def _emulated_figures(args: argparse.Namespace, walks: Sequence["Walk"]) -> Figures:
+def _scores_by_inputs(walks: Sequence["Walk"]) -> dict[str, list["Score"]]:
     from saddlewalk.evaluation.scoring import INPUTS
-    from saddlewalk.evaluation.side_by_side import walker_figures
 
-    scores = {name: [part for walk in walks for part in walk.scores[name]] for name in INPUTS}
-    return walker_figures(scores, {name: str(value) for name, value in given_fields(args).items()})
+    return {name: [part for walk in walks for part in walk.scores[name]] for name in INPUTS}
 
 
-def _score_falls(args: argparse.Namespace) -> tuple[dict[str, Figures], Writer]:
-    """Score every recorded walk; figures by walker, and what writes their files."""
+def _score_falls(args: argparse.Namespace) -> Part:
+    """Every recorded walk, by walker."""
     from saddlewalk.evaluation.recorded_falls import read_walkers, read_walks, score_walks
     from saddlewalk.evaluation.scoring import INPUTS
     from saddlewalk.evaluation.side_by_side import walker_figures
@@ -171,14 +198,18 @@ def _score_falls(args: argparse.Namespace) -> tuple[dict[str, Figures], Writer]:
     with _progress("recorded walks", len(tasks)) as done:
         scored = iter(score_walks(tasks, args.seed, args.jobs, done))
     by_walker = {name: list(itertools.islice(scored, len(each))) for name, each in walks.items()}
-    figures = {
-        walker.name: walker_figures(
-            {name: [each.scores[name] for each in by_walker[walker.name]] for name in INPUTS},
-            walker.body | given,
-        )
-        for walker in walkers
+    scores = {
+        name: {inputs: [walk.scores[inputs] for walk in each] for inputs in INPUTS}
+        for name, each in by_walker.items()
     }
-    return figures, functools.partial(_write_falls, by_walker)
+    return Part(
+        {
+            walker.name: walker_figures(scores[walker.name], walker.body | given)
+            for walker in walkers
+        },
+        {name: each["exact"] for name, each in scores.items()},
+        functools.partial(_write_falls, by_walker),
+    )
 
 
 def _walk(args: argparse.Namespace, count: int, config: Any) -> list["Walk"]:
@@ -318,9 +349,14 @@ def _write(console: "Console", folder: Path, writers: Sequence[Writer]) -> None:
         console.print(f"  {printable(folder / line)}", markup=False)
 
 
-def _write_scores(text: str, new: Path) -> Iterator[str]:
+def _write_scores(text: str, found: dict[str, "LeftOut"], new: Path) -> Iterator[str]:
+    from saddlewalk.evaluation.pictures import draw_reliability
+
     (new / "scores.json").write_text(text)
     yield "scores.json"
+    if found:
+        draw_reliability(found, new / RELIABILITY)
+        yield RELIABILITY
 
 
 def _write_emulated(

@@ -1,6 +1,6 @@
 """Pictures of an evaluation: ROC curves of both kinds of wearer, and the region of attraction."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from saddlewalk.evaluation.detection import evidence
+from saddlewalk.evaluation.left_out import LeftOut
 from saddlewalk.evaluation.region import CLAIMS, EXTENT, POSTURES, explore, plane
 from saddlewalk.evaluation.scoring import roc
 from saddlewalk.evaluation.walks import KINDS, MARGINS, WINDOWS, Walk
@@ -50,6 +51,26 @@ def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
                 aspect="equal",
             )
     row[-1].legend(loc="lower right", fontsize=8)
+    figure.savefig(path)
+
+
+def draw_reliability(found: Mapping[str, LeftOut], path: Path) -> None:
+    """What came true against what was said, of each walker by what the others taught."""
+    figure = Figure(figsize=(6, 6), dpi=110, layout="constrained")
+    axes = figure.subplots()
+    axes.plot([0, 1], [0, 1], color="0.8", lw=0.8)
+    for index, (name, each) in enumerate(found.items()):
+        said, true, ticks = zip(*each.reliability, strict=True)
+        axes.plot(said, true, "-", color=COLOURS[index % 8], lw=0.8)
+        sizes = 8 * np.log2(np.array(ticks))
+        axes.scatter(said, true, s=sizes, color=COLOURS[index % 8], label=name.replace("_", " "))
+    axes.set(
+        title="Falls within a second, by what the other walkers taught",
+        xlabel="said by the margin",
+        ylabel="came true",
+        aspect="equal",
+    )
+    axes.legend(loc="upper left")
     figure.savefig(path)
 
 

@@ -21,8 +21,9 @@ from saddlewalk.verdict import LEVELS, REASONS, level_name, reason_name
 GRAVITY_M_S2 = 9.80665
 TIMELY_S = 3 * TICK_S
 ROUNDING_S = 1e-6  # of differences between times of a table
+EVIDENCE_S = 3.0  # after a push
 # Key of the figures -> how long after the push evidence is collected, at most.
-WINDOWS = {"roc_to_0.24_s_before": 3.0, "roc_to_0.24_s_before_in_first_0.4_s": 0.4}
+WINDOWS = {"roc_to_0.24_s_before": EVIDENCE_S, "roc_to_0.24_s_before_in_first_0.4_s": 0.4}
 SETTLED_S = {"calm": 2.0, "start_stop": 0.0}  # by kind of walk, before its levels count
 INPUTS = ("exact", "noise", "one_tick_late")
 UNKNOWN, UNSTABLE = LEVELS.index("unknown"), LEVELS.index("unstable")
@@ -117,6 +118,7 @@ class Score:
     least: dict[str, dict[str, float]]  # by window and margin
     levels: Levels  # of a walk without a push, once settled
     exposed: Levels  # from the push to the fall, or to the end
+    course: np.ndarray  # (n, 2): time after the push and margin, up to the fall or the end
     stumble: Stumble | None  # of an alarm though it stayed up
     out_before_push: bool  # the XCoM left the feet by STUMBLE_M
 
@@ -219,6 +221,7 @@ def score(walk: Walk, said: Announced) -> Score:
         least={window: _least(walk, said, longest_s) for window, longest_s in WINDOWS.items()},
         levels=_levels_at(said, settled),
         exposed=_levels_at(said, exposed),
+        course=np.column_stack([t_s - walk.push_s, said.margins["margin"]])[exposed],
         stumble=_stumble(walk, out_m, usual, alarm_s) if stumbled else None,
         out_before_push=bool(out_m[usual].min(initial=math.inf) < -STUMBLE_M),
     )
