@@ -44,3 +44,23 @@ def test_readme_shows_the_program_that_is_compiled():
     program = re.search(r"```c\n(.*?)```", readme, re.DOTALL).group(1)
     assert program == (CHECKOUT / "examples/minimal.c").read_text()
     assert program.count("\n") <= 23
+
+
+PAGES = [*CHECKOUT.glob("*.md"), *(CHECKOUT / "docs").glob("*.md")]
+LINK = re.compile(r"\]\((?!https?:)([^)#]+)")
+TARGET = re.compile(r"`make ([a-z-]+)")
+FILE = re.compile(r"`((?:firmware|tests|tools|host_tools|examples)/[\w/.-]+)")
+
+
+def test_links_between_pages_and_files_lead_somewhere():
+    links = [page.parent / link for page in PAGES for link in LINK.findall(page.read_text())]
+    assert len(links) > 50
+    assert [str(link) for link in links if not link.exists()] == []
+
+
+def test_files_and_make_targets_that_pages_name_exist():
+    makefile = (CHECKOUT / "Makefile").read_text()
+    targets = {*re.findall(r"^([a-z-]+):", makefile, re.MULTILINE)}
+    text = "".join(page.read_text() for page in PAGES)
+    assert {*TARGET.findall(text)} - targets == set()
+    assert [name for name in FILE.findall(text) if not (CHECKOUT / name).exists()] == []
