@@ -75,11 +75,23 @@ def test_names_of_recordings_are_shown_with_their_control_characters_escaped(wri
 def test_a_plan_s_own_walks_give_back_its_configuration(write, tmp_path):
     walks = [write(walk_of(PERSON, v), f"{v}.csv") for v in SPEEDS_M_S]
     found = calibrated(tmp_path, *walks, "--mass", "55")
-    assert set(found) == set(PERSON)
+    assert set(found) == {*PERSON, "learn_ripple_start"}
     for name, value in PERSON.items():
         assert found[name] == pytest.approx(value, abs=TOLERANCE.get(name, 1e-4)), name
     text = (tmp_path / "person.toml").read_text()
     assert "step length: 47 steps, R2 0.91" in text
+
+
+def test_ripple_of_the_speed_is_what_the_supervisor_learned(write, tmp_path):
+    """A walk of even speed, and the same that sways fore and aft by 0.3 m/s."""
+    walk = walk_of(PERSON, 1.0)
+    com_m = walk.com_m.copy()
+    com_m[:, 0] += 0.3 / 7 * np.sin(7 * walk.time_s)
+    swaying = dataclasses.replace(walk, com_m=com_m)
+    even = calibrated(tmp_path, write(walk, "even.csv"))["learn_ripple_start"]
+    uneven = calibrated(tmp_path, write(swaying, "uneven.csv"))["learn_ripple_start"]
+    assert even == pytest.approx(0.134 / math.sqrt(9.81 * 0.91), abs=0.005)  # of its height alone
+    assert uneven > 1.5 * even
 
 
 def test_one_speed_fits_the_offsets_and_keeps_the_paper_s_slopes(write, tmp_path):

@@ -53,13 +53,16 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.gait.measures import measure
     from saddlewalk.gait.motion_capture import load_walk, read_markers
     from saddlewalk.gait.person_file import header_text, toml_text
+    from saddlewalk.gait.ripple import learned_ripple
 
     markers = read_markers(args.markers)
     for source in args.recordings:
         if args.recordings.count(source) > 1:
             raise UserError(f"{source} is given twice: its steps would count twice")
-    walks = [measure(load_walk(source, markers)) for source in args.recordings]
-    fits = calibrate(walks, args.height, args.mass)
+    recordings = [load_walk(source, markers) for source in args.recordings]
+    walks = [measure(recording) for recording in recordings]
+    ripples = [learned_ripple(recording) for recording in recordings]
+    fits = calibrate(walks, args.height, args.mass, ripples)
     config = checked(fits)
     sources = [walk.source for walk in walks]
     write_text("--out", args.out, toml_text(fits, sources))

@@ -57,9 +57,15 @@ class _Line:
 
 
 def calibrate(
-    walks: Sequence[WalkMeasures], height_m: float | None = None, mass_kg: float | None = None
+    walks: Sequence[WalkMeasures],
+    height_m: float | None = None,
+    mass_kg: float | None = None,
+    ripples: Sequence[float] = (),
 ) -> list[Fit]:
-    """Fit all that the walks of one person tell. Raises UserError naming what is not human."""
+    """Fit all that the walks of one person show; ripples: of each walk, NaN where it is not known.
+
+    Raises UserError naming what is not human.
+    """
     paper = configuration({})
     fits = [
         _body(walks, height_m, mass_kg),
@@ -70,6 +76,7 @@ def calibrate(
     ]
     fits.append(_lateral(walks, configuration(fields_of(fits))))
     fits.append(_asymmetry(walks, configuration(fields_of(fits))))
+    fits.append(_ripple(walks, ripples))
     return fits
 
 
@@ -226,6 +233,21 @@ def _asymmetry(walks: Sequence[WalkMeasures], config: Any) -> Fit:
     fields = {"step_length_factor_left": left / mean, "step_length_factor_right": right / mean}
     note = f"the left foot's steps are {left / right:.3f} of the right's"
     return Fit("asymmetry", fields, len(foot), note=note)
+
+
+def _ripple(walks: Sequence[WalkMeasures], ripples: Sequence[float]) -> Fit:
+    """Where the supervisor begins to learn it, [E32]."""
+    known = [
+        (ripple, len(walk.length_m))
+        for walk, ripple in zip(walks, ripples, strict=False)
+        if np.isfinite(ripple) and len(walk.length_m)
+    ]
+    if not known:
+        return Fit("ripple of the speed", note="no recording of a second or more with a step")
+    values, steps = np.array(known).T
+    mean = float(np.average(values, weights=steps))
+    note = f"{100 * mean:.1f} % of sqrt(g h)"
+    return Fit("ripple of the speed", {"learn_ripple_start": mean}, int(steps.sum()), note=note)
 
 
 def _samples(walks: Sequence[WalkMeasures], values: Sequence[np.ndarray]) -> _Samples:
