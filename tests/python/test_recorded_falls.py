@@ -168,8 +168,7 @@ def test_noise_and_a_tick_of_latency_stand_beside_the_exact_figures(folder):
     assert noise[EARLY].keys() == exact[EARLY].keys() == set(MARGINS)
     late = exact["one_tick_late"]
     assert late["announced_pct"] <= exact["announced_pct"]
-    # A level comes a tick of 0.08 s later, or just when it did if that is the tick of the push.
-    assert 0 <= exact["lead_median_s"] - late["lead_median_s"] <= 0.08 + 1e-9
+    assert exact["lead_median_s"] - late["lead_median_s"] == pytest.approx(0.08)
     del exact["noise"], other["twin"]["noise"]
     del exact["one_tick_late"], other["twin"]["one_tick_late"]
     assert exact == other["twin"]

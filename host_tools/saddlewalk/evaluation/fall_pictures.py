@@ -41,7 +41,7 @@ DASHES = ("-", "--")
 BEFORE_S, AFTER_S, FALLEN_S = 0.8, 2.4, 0.3  # about the push, and after a fall
 FALL_HEIGHT = 0.75  # of the usual
 MARGIN_STYLES = {
-    "margin": {"color": "black", "lw": 2.6},
+    "margin": {"color": "black", "lw": 2.6, "label": "margin, of the height"},
     "recovery_margin": {"color": ORANGE, "ls": "--"},
     "ebos_xcom": {"color": SKY},
     "mos_xcom": {"color": BLUE, "ls": ":"},
@@ -108,9 +108,10 @@ def draw_walk(scored: Scored, path: Path) -> None:
     height.set(ylabel="height of\nthe CoM (m)")
     for name, style in MARGIN_STYLES.items():
         if name in said.margins:
-            margins.plot(t_s[shown], said.margins[name][shown], label=name, marker=".", **style)
+            line = {"label": name, "marker": "."} | style
+            margins.plot(t_s[shown], said.margins[name][shown], **line)
     margins.axhline(0, color="0.4", lw=0.8)
-    margins.set(ylabel="margin (m)")
+    margins.set(ylabel="margins (m)")
     margins.set_ylim(bottom=max(margins.get_ylim()[0], MARGIN_SHOWN_M))
     margins.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     draw_level(level, {"t_s": t_s[shown], "level": said.level[shown]})
