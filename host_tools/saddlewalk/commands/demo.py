@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from saddlewalk.logs.recorder import Recorder
     from saddlewalk.logs.soundness import Check
 
-SPEEDS = [(0.0, 0.0), (1.0, 0.8), (7.0, 1.2), (16.0, 0.0)]
+SPEEDS = [(0.0, 0.0), (1.0, 0.8), (6.0, 1.2), (16.0, 0.0)]
 DURATION_S = 22.0
 PUSH_TIME_S = 12
 PUSH_N_S_KG = 8.0 / 63.3

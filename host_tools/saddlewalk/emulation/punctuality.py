@@ -3,9 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from saddlewalk.ticks import TICK_S
-
-STALL_S = TICK_S  # later than that, the wearer and the firmware have missed each other
+STALL_S = 0.02  # later than that, ticks are given older measurements than on an idle computer
 BEFORE_S = 3.0  # a fall takes up to two steps
 
 
