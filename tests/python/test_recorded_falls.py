@@ -146,6 +146,7 @@ def flattened(value, path=()):
 
 
 @pytest.mark.skipif(not RECIPE.exists(), reason="no recipe beside the checkout")
+@pytest.mark.timeout(600)  # 15 s on a computer that does nothing else
 @pytest.mark.parametrize("recorded", ["synthetic", "machines"])
 def test_figures_are_those_of_the_recipe(recorded, folder, tmp_path):
     source, program = FALLS if recorded == "machines" else folder, Path(sys.executable).parent
