@@ -3,6 +3,7 @@
 import argparse
 import difflib
 import math
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -15,6 +16,9 @@ from saddlewalk.toml_file import read_toml
 DEFAULT_HEIGHT_M = 1.79
 DEFAULT_MASS_KG = 63.3
 ANKLES = {"erf": 0, "rigid": 1, "cycloid": 2}
+
+# Old names of fields, accepted with a warning for one version.
+RENAMED = {"foresight_s": "prediction_horizon_s"}
 
 
 def add_body_options(parser: argparse.ArgumentParser) -> None:
@@ -90,8 +94,20 @@ def _origin(field: str, args: argparse.Namespace) -> str:
 
 
 def _read_file(path: Path) -> dict[str, float | int]:
-    fields = read_toml(path, "--config")
+    fields = {
+        _present_name(path, name): value for name, value in read_toml(path, "--config").items()
+    }
     return {name: _field_value(path, name, value) for name, value in fields.items()}
+
+
+def _present_name(path: Path, name: str) -> str:
+    if name in RENAMED:
+        print(
+            f"saddlewalk: {path}: {name} is called {RENAMED[name]} now; "
+            "the old name will be an error in the next version",
+            file=sys.stderr,
+        )
+    return RENAMED.get(name, name)
 
 
 def _field_value(path: Path, name: str, value: Any) -> float | int:

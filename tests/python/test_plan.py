@@ -1,5 +1,6 @@
 """`saddlewalk plan` against the golden runs, the twin, the paper's figures and bad options."""
 
+import argparse
 import csv
 import io
 import math
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main
+from saddlewalk.config import load_config
 from twin import Twin
 
 GOLDEN = Path(__file__).parents[1] / "golden"
@@ -152,6 +154,19 @@ def test_body_options_shape_the_plan(capsys, tmp_path):
     assert float(from_file[0]["leg_length_m"]) == pytest.approx(0.57 * 1.6)
     overridden = plan(capsys, "--speed", "1.2", "--config", str(config), "--height", "1.7")
     assert float(overridden[0]["leg_length_m"]) == pytest.approx(0.57 * 1.7)
+
+
+def test_old_name_of_a_field_is_read_with_a_warning(tmp_path, capsys):
+    old, new = tmp_path / "old.toml", tmp_path / "new.toml"
+    old.write_text("foresight_s = 0.55\n")
+    new.write_text("prediction_horizon_s = 0.55\n")
+    configs = [
+        load_config(argparse.Namespace(config=path, height=None, mass=None)) for path in (old, new)
+    ]
+    assert [config.prediction_horizon_s for config in configs] == [np.float32(0.55)] * 2
+    warning = capsys.readouterr().err
+    assert f"{old}: foresight_s is called prediction_horizon_s now" in warning
+    assert str(new) not in warning
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ static saddle_body_t body;
 void setUp(void)
 {
     config = paper_config();
-    config.foresight_s = 2.0f; /* as far as any step here */
+    config.prediction_horizon_s = 2.0f; /* as far as any step here */
     body = model_of(&config)->body;
 }
 
@@ -198,7 +198,7 @@ static void test_com_outside_the_step_is_at_its_nearer_end(void)
 
 static void test_time_to_the_landing_is_at_most_the_foresight(void)
 {
-    config.foresight_s = 0.3f;
+    config.prediction_horizon_s = 0.3f;
     const saddle_step_t step = steady_step(SADDLE_LEFT, 0.3);
     const double half = half_step(0.3);
     ASSERT_SAME_FLOAT(0.3f, saddle_expect(model_of(&config), &step, 0.0f).time_s);

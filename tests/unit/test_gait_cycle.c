@@ -85,7 +85,7 @@ static void test_via_points_are_passed_in_order_and_to_the_nanometre(void)
     const int64_t half_nm = saddle_position_to_nm(cycle.quarter_length);
     for (uint32_t quarter = 1; quarter <= 40u; quarter++) {
         const uint8_t phase = cycle.phase;
-        const float way = saddle_cycle_way_to_via_point_m(&cycle);
+        const float way = saddle_cycle_distance_to_via_point_m(&cycle);
         TEST_ASSERT_TRUE(way > 0.0f && way <= cycle.quarter.length_m);
         while (cycle.phase == phase) {
             TEST_ASSERT_EQUAL_UINT32(0, advance(1000, &arrived));
@@ -128,7 +128,7 @@ static void test_last_swing_comes_to_rest_beside_the_stance_foot(void)
     }
     ASSERT_SAME_FLOAT(0.5f, cycle.swing.land_progress);
     const float speed = saddle_speed_to_m_s(cycle.profile.speed);
-    const float way = saddle_cycle_way_to_via_point_m(&cycle);
+    const float way = saddle_cycle_distance_to_via_point_m(&cycle);
     cycle.profile.target = 0;
     cycle.profile.rate_m_s2 = speed * speed / (2.0f * way);
     const double expected_us = 2e6 * (double)way / (double)speed;

@@ -18,7 +18,7 @@ void setUp(void)
 {
     config = paper_config();
     config.bos_factor = 1.0f;
-    config.foresight_s = 0.5f;
+    config.prediction_horizon_s = 0.5f;
     config.recovery_width_min_m = 0.05f;
     config.recovery_width_max_m = 0.45f;
     config.recovery_margin_m = 0.0f;
@@ -68,7 +68,7 @@ static double outward_of(saddle_side_t stance)
 static places_t places(const saddle_recovery_target_t *target)
 {
     const double step_s = (double)target->step_time_s;
-    const double quick_s = fmin(step_s, (double)config.foresight_s);
+    const double quick_s = fmin(step_s, (double)config.prediction_horizon_s);
     const double x = (double)target->xcom_m.x + (double)target->departure_m.x;
     const double y = outward_of(target->stance) *
                      ((double)target->xcom_m.y + (double)target->departure_m.y);
@@ -122,7 +122,7 @@ static saddle_recovery_target_t random_catch(uint32_t *state)
 /* Below 0.245 m/s the XCoM lags the planned landing by more than d_h: that is no departure. */
 static void test_planned_walk_lands_where_it_is_planned_at_every_speed(void)
 {
-    config.foresight_s = 0.4f;
+    config.prediction_horizon_s = 0.4f;
     config.recovery_width_max_m = 0.5f;
     for (double v = 0.05; v < 1.93; v += 0.01) {
         const saddle_recovery_target_t left = planned_walk(v);
@@ -226,7 +226,7 @@ static void test_xcom_that_goes_aside_widens_the_step_or_narrows_it(void)
 static bool catches(const saddle_recovery_target_t *target, double x, double outward_y)
 {
     const double step_s = (double)target->step_time_s;
-    const double quick_s = fmin(step_s, (double)config.foresight_s);
+    const double quick_s = fmin(step_s, (double)config.prediction_horizon_s);
     const double ahead = (double)target->xcom_m.x + (double)target->departure_m.x - x;
     const double aside = outward_y - outward_of(target->stance) *
                                          ((double)target->xcom_m.y +

@@ -26,7 +26,7 @@ void setUp(void)
     config.bos_factor = 1.0f;
     config.ankle_work_factor = 1.0f;
     config.stop_margin_m = 0.0f;
-    config.foresight_s = 0.4f;
+    config.prediction_horizon_s = 0.4f;
     config.cop_shift_ap_m = 0.0f;
     config.cop_shift_ml_m = 0.0f;
     config.recovery_width_min_m = 0.02f;
@@ -93,7 +93,7 @@ static point_t landing_of(const walk_t *walk)
 
 static double until_landing_s(const walk_t *walk, double x)
 {
-    return fmin((walk->half - x) / walk->speed, (double)config.foresight_s);
+    return fmin((walk->half - x) / walk->speed, (double)config.prediction_horizon_s);
 }
 
 static point_t xcom(const state_t *state)
@@ -564,7 +564,7 @@ static void test_planned_shift_of_weight_is_the_reference_while_it_leads(void)
  * as the XCoM will have departed, but for what the CoP mends. */
 static void test_standing_person_steps_to_the_side_of_the_push(void)
 {
-    const double growth = exp(FREQUENCY * (double)config.foresight_s);
+    const double growth = exp(FREQUENCY * (double)config.prediction_horizon_s);
     config.recovery_follow = 1.0f;
     config.cop_shift_ap_m = 0.01f;
     config.cop_shift_ml_m = 0.02f;

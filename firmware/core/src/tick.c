@@ -41,7 +41,7 @@ saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *co
     return SADDLE_OK;
 }
 
-static saddle_status_t judge_call(const saddle_context_t *context, const saddle_input_t *input)
+static saddle_status_t check_call(const saddle_context_t *context, const saddle_input_t *input)
 {
     if (context == NULL || input == NULL) {
         return SADDLE_ERROR_NULL;
@@ -159,7 +159,7 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     if (output == NULL) {
         return SADDLE_ERROR_NULL;
     }
-    const saddle_status_t status = judge_call(context, input);
+    const saddle_status_t status = check_call(context, input);
     if (status != SADDLE_OK) {
         saddle_clear(output, sizeof *output);
         output->status = status;

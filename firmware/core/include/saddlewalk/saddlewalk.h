@@ -23,7 +23,7 @@ extern "C" {
 #include <saddlewalk/types.h>
 #include <saddlewalk/version.h>
 
-/** The paper's parameters for a body. The arguments are judged by saddle_config_check(). */
+/** The paper's parameters for a body. saddle_config_check() checks the arguments. */
 saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg);
 
 /** Name of the first field that is not finite, out of range or at odds with the others;
@@ -35,7 +35,7 @@ const char *saddle_config_check(const saddle_config_t *config);
 const saddle_config_field_t *saddle_config_field(size_t index);
 
 /** Copy and check the configuration and reset the context. On an error the context stays
- *  uninitialised and every tick on it says so. May be called again at any time. */
+ *  uninitialised and every tick on it returns SADDLE_ERROR_UNINITIALISED. May be called again at any time. */
 saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *config);
 
 /** That nothing was ever measured: for a plan without a wearer. */

@@ -62,7 +62,7 @@ typedef struct {
     float step_width_factor_right;
     float swing_clearance_m;          /**< height of the swing foot at mid-swing, [E10] */
     float tick_max_s;                 /**< the plan advances by no more than this in one tick */
-    float command_max_age_s;          /**< an older command is not obeyed: the walk stops */
+    float command_max_age_s;          /**< an older command times out: the walk stops */
     float lost_inputs_stop;           /**< 1: lost inputs stop the walk; 0: for recordings, or a
                                            device with a safe state of its own */
     float resume_time_s;              /**< inputs that were lost must be good for so long */
@@ -75,7 +75,7 @@ typedef struct {
     float ankle_work_factor;          /**< W_max of m g d_h^2 / l_p, [E27] */
     float stop_margin_m;              /**< of the XCoM, to stop in the present posture; -10: any, as
                                            printed, [E36] */
-    float foresight_s;                /**< a wearer in need can put the foot down within this, [E28] */
+    float prediction_horizon_s;                /**< in an emergency the foot can land within this, [E28] */
     float cop_shift_ap_m;             /**< how far the wearer can move the CoP, [E30]; 0: as printed */
     float cop_shift_ml_m;
     float recovery_width_min_m;       /**< a recovery step is at least so wide, [E30] */
@@ -245,7 +245,7 @@ typedef struct {
 } saddle_bos_t;
 
 /** Which fields of saddle_scores_t hold a result; the others are 0. xcom_m is known whenever the
- *  velocity is, and bos says so itself (bos.defined). */
+ *  velocity is, and bos has its own flag (bos.defined). */
 typedef enum {
     SADDLE_VALID_V_COMP = 1u << 0,
     SADDLE_VALID_STEP = 1u << 1, /**< s_pend and s_jump */
@@ -347,7 +347,7 @@ typedef struct {
 
 /* ---- a tick -------------------------------------------------------------------------------- */
 
-/** Did the call work? What the answer is worth is told by plan.valid and scores.valid. */
+/** Did the call work? Whether there is an answer is in plan.valid and scores.valid. */
 typedef enum {
     SADDLE_OK = 0,
     SADDLE_ERROR_NULL = 1,          /**< an argument is NULL */

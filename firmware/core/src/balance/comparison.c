@@ -80,7 +80,7 @@ static void compare_standing(const saddle_model_t *model, const saddle_wearer_t 
     verdict->ebos_com_m = scores->mos_com_m;
     verdict->ebos_xcom_m = scores->mos_xcom_m;
 
-    const saddle_growth_t growth = saddle_growth(model, model->config.foresight_s, false);
+    const saddle_growth_t growth = saddle_growth(model, model->config.prediction_horizon_s, false);
     const saddle_side_t foot = verdict->xcom_deviation_m.y > 0.0f ? SADDLE_LEFT : SADDLE_RIGHT;
     const saddle_side_t stance = saddle_other_side(foot);
     const saddle_vec2_t from_stance_m =
@@ -90,7 +90,7 @@ static void compare_standing(const saddle_model_t *model, const saddle_wearer_t 
         .landing_m = from_stance_m,
         .xcom_m = saddle_vec2_sub(xcom_of(model, &planned), posture->cop_m[stance]),
         .departure_m = least_deviation_m(model, verdict->xcom_deviation_m, from_stance_m, &growth),
-        .step_time_s = model->config.foresight_s,
+        .step_time_s = model->config.prediction_horizon_s,
     };
     saddle_recovery_step(model, &target, &verdict->recovery);
 }

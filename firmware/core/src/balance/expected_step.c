@@ -51,8 +51,8 @@ saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_ste
                            ? state_at_saddle(&ahead, step->speed_m_s)
                            : state_at(&ahead, step->speed_m_s, half_ahead_m);
     expected.landing_m = step->landing_m;
-    expected.time_s =
-        saddle_clamp((half_ahead_m - phase_m) / step->speed_m_s, 0.0f, model->config.foresight_s);
+    expected.time_s = saddle_clamp((half_ahead_m - phase_m) / step->speed_m_s, 0.0f,
+                                   model->config.prediction_horizon_s);
     expected.step_time_s = (half_ahead_m + step->half_behind_m) / step->speed_m_s;
     return expected;
 }
@@ -61,13 +61,13 @@ saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_ste
 saddle_growth_t saddle_growth(const saddle_model_t *model, float time_s, bool trailing)
 {
     const saddle_body_t *body = &model->body;
-    const bool latest = time_s == model->config.foresight_s;
+    const bool latest = time_s == model->config.prediction_horizon_s;
     const float w = body->natural_frequency_rad_s;
-    saddle_growth_t growth = {.factor = latest ? body->foresight_growth : saddle_exp(w * time_s)};
+    saddle_growth_t growth = {.factor = latest ? body->horizon_growth : saddle_exp(w * time_s)};
     if (trailing) {
         const float free_s = time_s - saddle_smaller(time_s, SADDLE_TRAILING_S);
         growth.trailing =
-            growth.factor - (latest ? body->foresight_free_growth : saddle_exp(w * free_s));
+            growth.factor - (latest ? body->horizon_free_growth : saddle_exp(w * free_s));
     }
     return growth;
 }

@@ -21,7 +21,7 @@ typedef struct {
     saddle_com_state_t now;     /**< at the measured phase */
     saddle_com_state_t landing; /**< when the foot lands */
     saddle_vec2_t landing_m;    /**< there */
-    float time_s;               /**< until then, at most foresight_s */
+    float time_s;               /**< until then, at most prediction_horizon_s */
     float step_time_s;          /**< of a whole step */
 } saddle_expectation_t;
 

@@ -1,5 +1,6 @@
 #include "balance/learned_walk.h"
 
+#include "math/bytes.h"
 #include "math/elementary.h"
 
 #include <math.h>
@@ -26,14 +27,12 @@
 void saddle_learning_init(saddle_learning_t *learning, const saddle_model_t *model)
 {
     const float start = model->config.learn_ripple_start;
-    const saddle_learning_t none = {
-        .walk = {.ripple = start},
-        .ripple_square = start * start,
-        .watched_s = FIRST_S,
-        .walked_s = RIPPLE_START_S,
-        .lowest_margin = 1.0f,
-    };
-    *learning = none;
+    saddle_clear(learning, sizeof *learning);
+    learning->walk.ripple = start;
+    learning->ripple_square = start * start;
+    learning->watched_s = FIRST_S;
+    learning->walked_s = RIPPLE_START_S;
+    learning->lowest_margin = 1.0f;
 }
 
 void saddle_learning_gap(saddle_learning_t *learning)

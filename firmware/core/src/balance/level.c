@@ -3,7 +3,7 @@
 #include "balance/scores.h"
 #include "math/elementary.h"
 
-/* A score that a walk is judged by and that is too low. */
+/* The first score of the walk that is too low. */
 static saddle_reason_t low_score(const saddle_model_t *model, uint32_t faults,
                                  const saddle_scores_t *scores)
 {

@@ -29,7 +29,7 @@ static interval_t along(const saddle_model_t *model, const saddle_recovery_targe
 }
 
 /* Outward from the stance foot: beyond the XCoM, but so that the step after it reaches back over
- * it. growth: in the time of that step, which may be as quick as foresight_s. */
+ * it. growth: in the time of that step, which may be as quick as prediction_horizon_s. */
 static interval_t across(const saddle_model_t *model, float xcom_m, float growth)
 {
     const saddle_config_t *config = &model->config;
@@ -59,7 +59,7 @@ void saddle_recovery_step(const saddle_model_t *model, const saddle_recovery_tar
     const float step_time_s = target->step_time_s;
     const float growth = saddle_exp(model->body.natural_frequency_rad_s * step_time_s);
     const float quick_growth =
-        step_time_s < model->config.foresight_s ? growth : model->body.foresight_growth;
+        step_time_s < model->config.prediction_horizon_s ? growth : model->body.horizon_growth;
     const interval_t x = along(model, target, xcom_m.x, growth);
     const interval_t y = across(model, outward * xcom_m.y, quick_growth);
     const float room_x_m = x.max_m - x.min_m;

@@ -95,7 +95,7 @@ static bool is_inside(const saddle_bos_t *bos, saddle_vec2_t place_m)
 }
 
 /* How far the border is from an inner place along a unit direction, both in saddle space. */
-static float way_out_m(const saddle_bos_t *bos, saddle_vec2_t place_m, saddle_vec2_t direction)
+static float distance_out_m(const saddle_bos_t *bos, saddle_vec2_t place_m, saddle_vec2_t direction)
 {
     const float along_m = saddle_vec2_dot(place_m, direction);
     const float inside_m2 = bos->radius_m * bos->radius_m - place_m.x * place_m.x -
@@ -141,8 +141,8 @@ saddle_vec2_t saddle_bos_exit_m(const saddle_bos_t *bos, saddle_vec2_t point_m,
     }
     const saddle_vec2_t direction =
         to_saddle(bos, (saddle_vec2_t){direction_m_s.x / speed_m_s, direction_m_s.y / speed_m_s});
-    const float way_m = way_out_m(bos, place_m, direction);
-    return to_task_m(bos, saddle_vec2_add(place_m, saddle_vec2_scale(way_m, direction)));
+    const float out_m = distance_out_m(bos, place_m, direction);
+    return to_task_m(bos, saddle_vec2_add(place_m, saddle_vec2_scale(out_m, direction)));
 }
 
 /* The arc around +y_S spans +-half_angle from y_S; a plain disc is a regular polygon. */

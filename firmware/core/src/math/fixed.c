@@ -95,9 +95,9 @@ saddle_fixed_t saddle_speed_times_s(saddle_fixed_t speed, float time_s)
     const int64_t time_q31 = (int64_t)(uint32_t)(in_range_s * TWO_POW_31);
     const int64_t upper = in_range / ((int64_t)1 << 21);
     const int64_t lower = in_range - upper * ((int64_t)1 << 21);
-    const int64_t way_q42_m =
+    const int64_t distance_q42_m =
         time_q31 * upper / ((int64_t)1 << 10) + time_q31 * lower / ((int64_t)1 << 31);
-    return limited_integer(way_q42_m, (int64_t)2 << 42) * 1000000;
+    return limited_integer(distance_q42_m, (int64_t)2 << 42) * 1000000;
 }
 
 saddle_fixed_t saddle_position_sum(saddle_fixed_t a, saddle_fixed_t b)

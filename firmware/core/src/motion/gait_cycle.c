@@ -20,8 +20,8 @@
 #define LANDING_WIDTH_MIN_M 0.02f
 #define LANDING_AIR_MAX 0.25f
 
-/* A longer way to the foot via point, of the planned one, is no misplaced landing: at the planned
- * path's slope the CoM would leave the feet sideways. */
+/* A distance to the foot via point that is more times the planned one is no misplaced landing: at
+ * the planned path's slope the CoM would leave the feet sideways. */
 #define LANDING_STRETCH_MAX 2.0f
 
 /* The CoM stays within this share of the pendulum's length from the stance foot, squared. */
@@ -168,7 +168,7 @@ static float toe_off_angle_rad(const saddle_cycle_t *cycle, const saddle_model_t
     return ankle.toe_off_rad;
 }
 
-/* The heel strike after the one under way. */
+/* The next heel strike. */
 static void plan_heel_strike(saddle_cycle_t *cycle, const saddle_model_t *model,
                              float heel_strike_rad)
 {
@@ -259,7 +259,7 @@ void saddle_cycle_set_last_swing(saddle_cycle_t *cycle, bool last_swing)
     cycle->last_swing = last_swing;
 }
 
-float saddle_cycle_way_to_via_point_m(const saddle_cycle_t *cycle)
+float saddle_cycle_distance_to_via_point_m(const saddle_cycle_t *cycle)
 {
     const saddle_fixed_t end = saddle_cycle_before_landing(cycle) ? cycle->quarter_length : 0;
     return saddle_position_to_m(end - cycle->position);
@@ -272,8 +272,8 @@ static bool comes_to_rest(const saddle_cycle_t *cycle, uint32_t dt_us, uint32_t 
         return false;
     }
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
-    const float way_m = saddle_cycle_way_to_via_point_m(cycle);
-    const float time_us = speed_m_s > 0.0f ? 2.0e6f * way_m / speed_m_s : 0.0f;
+    const float distance_m = saddle_cycle_distance_to_via_point_m(cycle);
+    const float time_us = speed_m_s > 0.0f ? 2.0e6f * distance_m / speed_m_s : 0.0f;
     if (time_us > (float)dt_us) {
         return false;
     }
@@ -292,25 +292,25 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model
         return rest_us;
     }
     const saddle_speed_profile_t before = cycle->profile;
-    float way_m = 0.0f;
-    saddle_fixed_t way = saddle_profile_advance(&cycle->profile, dt_us);
+    float distance_m = 0.0f;
+    saddle_fixed_t distance = saddle_profile_advance(&cycle->profile, dt_us);
     for (int i = 0; i < VIA_POINTS_A_TICK; i++) {
         const saddle_fixed_t end = saddle_cycle_before_landing(cycle) ? cycle->quarter_length : 0;
         const saddle_fixed_t to_end = end - cycle->position;
-        if (way < to_end || (cycle->last_swing && !saddle_cycle_before_landing(cycle))) {
+        if (distance < to_end || (cycle->last_swing && !saddle_cycle_before_landing(cycle))) {
             break;
         }
-        way -= to_end;
-        way_m += saddle_position_to_m(to_end);
+        distance -= to_end;
+        distance_m += saddle_position_to_m(to_end);
         cycle->position = end;
-        const saddle_fixed_t speed = saddle_profile_speed_after(&before, way_m);
+        const saddle_fixed_t speed = saddle_profile_speed_after(&before, distance_m);
         if (saddle_cycle_before_landing(cycle)) {
             pass_saddle(cycle, model, speed, heel_strike_rad);
         } else {
             pass_foot(cycle, model, speed);
         }
     }
-    cycle->position += way;
+    cycle->position += distance;
     if (!saddle_cycle_before_landing(cycle) && cycle->position > 0) {
         cycle->position = 0; /* a last swing stays beside the stance foot */
         cycle->profile.speed = 0;
@@ -379,12 +379,12 @@ static void redirect_swing(saddle_cycle_t *cycle, const saddle_model_t *model, s
     swing->offset_m.y = (foot_m.y - swing->line_y_m) / fade;
 }
 
-/* A last swing that ends after a way of way_m comes to rest no harder than allowed. */
-static bool can_end(const saddle_cycle_t *cycle, const saddle_model_t *model, float way_m)
+/* A last swing that ends after distance_m comes to rest no harder than allowed. */
+static bool can_end(const saddle_cycle_t *cycle, const saddle_model_t *model, float distance_m)
 {
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
     return !cycle->last_swing ||
-           saddle_can_brake(speed_m_s, model->config.acceleration_m_s2, way_m);
+           saddle_can_brake(speed_m_s, model->config.acceleration_m_s2, distance_m);
 }
 
 bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m)

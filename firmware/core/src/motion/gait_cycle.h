@@ -1,4 +1,4 @@
-/** [E23] The gait cycle: quarter after quarter, driven by the way of the CoM, so that any change of
+/** [E23] The gait cycle: quarter after quarter, driven by the distance that the CoM goes, so that any change of
  *  speed or of the feet meets it without a jump. */
 #ifndef SADDLEWALK_GAIT_CYCLE_H
 #define SADDLEWALK_GAIT_CYCLE_H
@@ -54,7 +54,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
 bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);
 
 /** Way to the end of the running quarter. */
-float saddle_cycle_way_to_via_point_m(const saddle_cycle_t *cycle);
+float saddle_cycle_distance_to_via_point_m(const saddle_cycle_t *cycle);
 
 /** The pose's com_m.y alone. */
 float saddle_cycle_com_y_m(const saddle_cycle_t *cycle);

@@ -25,17 +25,17 @@ uint32_t saddle_plan_horizon_us(const saddle_planner_t *planner)
         return STANDING_HORIZON_US;
     }
     const float step_m = saddle_cycle_before_landing(cycle) ? 2.0f : 3.0f;
-    const float way_m =
-        saddle_clamp(saddle_cycle_way_to_via_point_m(cycle) + step_m * cycle->quarter.length_m,
+    const float distance_m =
+        saddle_clamp(saddle_cycle_distance_to_via_point_m(cycle) + step_m * cycle->quarter.length_m,
                      0.0f, DISTANCE_MAX_M);
     const saddle_pace_t pace = saddle_pace(&cycle->profile);
-    const float time_s = saddle_pace_time_s(&pace, way_m);
+    const float time_s = saddle_pace_time_s(&pace, distance_m);
     return (uint32_t)(1.0e6f * saddle_clamp(time_s, 0.0f, HORIZON_MAX_S));
 }
 
 /* Half of the step after the next via point, or of the running one; 0 beside the stance foot. */
 static float half_step_to_landing_m(const saddle_cycle_t *cycle, const saddle_model_t *model,
-                                    float way_m)
+                                    float distance_m)
 {
     if (saddle_cycle_before_landing(cycle)) {
         return cycle->quarter.length_m;
@@ -43,37 +43,38 @@ static float half_step_to_landing_m(const saddle_cycle_t *cycle, const saddle_mo
     if (cycle->last_swing) {
         return 0.0f;
     }
-    const saddle_fixed_t speed = saddle_profile_speed_after(&cycle->profile, way_m);
+    const saddle_fixed_t speed = saddle_profile_speed_after(&cycle->profile, distance_m);
     return saddle_position_to_m(
         saddle_half_step(model, saddle_other_side(cycle->quarter.stance), speed));
 }
 
 /* A last swing brakes evenly, to rest at its end: twice the time that its speed would take. */
-static float time_of_last_swing_s(const saddle_cycle_t *cycle, float way_m)
+static float time_of_last_swing_s(const saddle_cycle_t *cycle, float distance_m)
 {
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
-    return speed_m_s > 0.0f ? saddle_clamp(2.0f * way_m / speed_m_s, 0.0f, SADDLE_TIME_MAX_S)
+    return speed_m_s > 0.0f ? saddle_clamp(2.0f * distance_m / speed_m_s, 0.0f, SADDLE_TIME_MAX_S)
                             : 0.0f;
 }
 
 static void write_step_events(const saddle_cycle_t *cycle, const saddle_model_t *model,
                               saddle_plan_t *plan)
 {
-    const float way_m = saddle_cycle_way_to_via_point_m(cycle);
-    const float half_step_m = half_step_to_landing_m(cycle, model, way_m);
+    const float distance_m = saddle_cycle_distance_to_via_point_m(cycle);
+    const float half_step_m = half_step_to_landing_m(cycle, model, distance_m);
     plan->landing_m.x = 2.0f * half_step_m;
     plan->landing_m.y = cycle->stance_y_m + cycle->swing.line_y_m;
     if (cycle->last_swing && !saddle_cycle_before_landing(cycle) && cycle->profile.target == 0) {
-        plan->time_to_via_point_s = time_of_last_swing_s(cycle, way_m);
+        plan->time_to_via_point_s = time_of_last_swing_s(cycle, distance_m);
         plan->time_to_heel_strike_s = SADDLE_TIME_MAX_S;
         plan->time_to_toe_off_s = SADDLE_TIME_MAX_S;
         return;
     }
-    const float landing_m = saddle_cycle_before_landing(cycle) ? way_m : way_m + half_step_m;
+    const float landing_m =
+        saddle_cycle_before_landing(cycle) ? distance_m : distance_m + half_step_m;
     const float lead_m = cycle->next_lead_m;
     const float heel_m = landing_m > lead_m ? landing_m - lead_m : 0.0f;
     const saddle_pace_t pace = saddle_pace(&cycle->profile);
-    plan->time_to_via_point_s = saddle_pace_time_s(&pace, way_m);
+    plan->time_to_via_point_s = saddle_pace_time_s(&pace, distance_m);
     plan->time_to_toe_off_s = saddle_pace_time_s(&pace, landing_m);
     plan->time_to_heel_strike_s = saddle_pace_time_s(&pace, heel_m);
 }
@@ -119,9 +120,9 @@ static void write_standing(const saddle_planner_t *planner, const saddle_model_t
     const float share = profile.value;
     const float rate_hz = profile.slope / duration_s;
     const saddle_vec2_t shift_m = saddle_vec2_sub(planner->shift_to_m, planner->shift_from_m);
-    const saddle_vec2_t on_the_way_m =
+    const saddle_vec2_t shifted_m =
         saddle_vec2_add(planner->shift_from_m, saddle_vec2_scale(share, shift_m));
-    const saddle_vec2_t com_m = planner->shifting ? on_the_way_m : planner->shift_to_m;
+    const saddle_vec2_t com_m = planner->shifting ? shifted_m : planner->shift_to_m;
     const float z_m = saddle_standing_height_m(planner, model, com_m);
     const float leg_m = sqrtf(saddle_vec2_dot(com_m, com_m) + z_m * z_m);
     const saddle_vec2_t near_m = leg_m > model->body.pendulum_m * 1.00001f

@@ -9,7 +9,7 @@
 #define RATE_MAX_M_S2 15.9f
 
 /* A target that is not approached. */
-#define WAY_NEVER_M 1.0e9f
+#define DISTANCE_NEVER_M 1.0e9f
 
 /* [E23] */
 saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t dt_us)
@@ -31,13 +31,13 @@ saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t 
            saddle_position_from_m(0.5f * change_m_s * change_time_s);
 }
 
-bool saddle_can_brake(float speed_m_s, float rate_m_s2, float way_m)
+bool saddle_can_brake(float speed_m_s, float rate_m_s2, float distance_m)
 {
-    return speed_m_s * speed_m_s <= 2.0f * rate_m_s2 * way_m;
+    return speed_m_s * speed_m_s <= 2.0f * rate_m_s2 * distance_m;
 }
 
 /* Way on which the target is reached. */
-static float change_way_m(const saddle_pace_t *pace)
+static float change_distance_m(const saddle_pace_t *pace)
 {
     const float difference_m2_s2 =
         (pace->target_m_s - pace->speed_m_s) * (pace->target_m_s + pace->speed_m_s);
@@ -45,7 +45,7 @@ static float change_way_m(const saddle_pace_t *pace)
         return 0.0f;
     }
     if (pace->acceleration_m_s2 == 0.0f) {
-        return WAY_NEVER_M;
+        return DISTANCE_NEVER_M;
     }
     return difference_m2_s2 / (2.0f * pace->acceleration_m_s2);
 }
@@ -57,38 +57,39 @@ saddle_pace_t saddle_pace(const saddle_speed_profile_t *profile)
     pace.target_m_s = saddle_speed_to_m_s(profile->target);
     pace.acceleration_m_s2 =
         profile->target < profile->speed ? -profile->rate_m_s2 : profile->rate_m_s2;
-    pace.change_m = change_way_m(&pace);
+    pace.change_m = change_distance_m(&pace);
     return pace;
 }
 
-static float speed_on_the_way_m_s(const saddle_pace_t *pace, float way_m)
+static float speed_after_m_s(const saddle_pace_t *pace, float distance_m)
 {
-    const float square = pace->speed_m_s * pace->speed_m_s + 2.0f * pace->acceleration_m_s2 * way_m;
+    const float square =
+        pace->speed_m_s * pace->speed_m_s + 2.0f * pace->acceleration_m_s2 * distance_m;
     return square > 0.0f ? sqrtf(square) : 0.0f;
 }
 
-saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile, float way_m)
+saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile, float distance_m)
 {
     const saddle_pace_t pace = saddle_pace(profile);
-    if (way_m >= pace.change_m) {
+    if (distance_m >= pace.change_m) {
         return profile->target;
     }
-    const float sum_m_s = pace.speed_m_s + speed_on_the_way_m_s(&pace, way_m);
+    const float sum_m_s = pace.speed_m_s + speed_after_m_s(&pace, distance_m);
     if (sum_m_s <= 0.0f) {
         return 0;
     }
     /* The change alone is rounded: the steps' lengths follow from this speed and add up. */
-    const float change_m_s = 2.0f * pace.acceleration_m_s2 * way_m / sum_m_s;
+    const float change_m_s = 2.0f * pace.acceleration_m_s2 * distance_m / sum_m_s;
     return profile->speed + saddle_speed_from_m_s(change_m_s);
 }
 
-float saddle_pace_time_s(const saddle_pace_t *pace, float way_m)
+float saddle_pace_time_s(const saddle_pace_t *pace, float distance_m)
 {
-    const bool changing = way_m < pace->change_m;
-    const float changing_m = changing ? way_m : pace->change_m;
-    const float then_m_s = changing ? speed_on_the_way_m_s(pace, way_m) : pace->target_m_s;
+    const bool changing = distance_m < pace->change_m;
+    const float changing_m = changing ? distance_m : pace->change_m;
+    const float then_m_s = changing ? speed_after_m_s(pace, distance_m) : pace->target_m_s;
     const float mean_m_s = 0.5f * (pace->speed_m_s + then_m_s);
-    const float rest_m = way_m - changing_m;
+    const float rest_m = distance_m - changing_m;
     float time_s = 0.0f;
     if (changing_m > 0.0f) {
         time_s += mean_m_s > 0.0f ? changing_m / mean_m_s : SADDLE_TIME_MAX_S;

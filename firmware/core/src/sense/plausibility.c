@@ -10,7 +10,7 @@
 #define COP_DISTANCE_MAX_M 2.5f
 
 /* A number that keeps its bits is frozen once the rest of the body says that it moved by this. */
-#define FROZEN_WAY_M 0.02f
+#define FROZEN_DISTANCE_M 0.02f
 
 /* A CoM that is slower may leave the feet where they are, to the bit. */
 #define REST_M_S 0.02f
@@ -40,7 +40,7 @@ static bool same(saddle_vec2_t a, saddle_vec2_t b)
     return a.x == b.x && a.y == b.y;
 }
 
-static uint32_t judge_com(const saddle_model_t *model, const saddle_measurement_t *measurement)
+static uint32_t check_com(const saddle_model_t *model, const saddle_measurement_t *measurement)
 {
     if ((float)measurement->com.age_us > model->body.com_max_age_us) {
         return (uint32_t)SADDLE_FAULT_COM_STALE;
@@ -53,7 +53,7 @@ static uint32_t judge_com(const saddle_model_t *model, const saddle_measurement_
     return 0;
 }
 
-static uint32_t judge_foot(const saddle_model_t *model, const saddle_measurement_t *measurement,
+static uint32_t check_foot(const saddle_model_t *model, const saddle_measurement_t *measurement,
                            saddle_side_t side)
 {
     const bool left = side == SADDLE_LEFT;
@@ -67,28 +67,28 @@ static uint32_t judge_foot(const saddle_model_t *model, const saddle_measurement
 }
 
 /* Let time pass for a number that keeps its bits, or start anew. */
-static void follow_still(saddle_still_t *still, bool unchanged, saddle_vec2_t velocity_m_s,
+static void follow_timer(saddle_frozen_timer_t *timer, bool unchanged, saddle_vec2_t velocity_m_s,
                          float dt_s)
 {
     if (!unchanged) {
-        *still = (saddle_still_t){.still_s = 0.0f};
+        *timer = (saddle_frozen_timer_t){.unchanged_s = 0.0f};
         return;
     }
-    still->still_s += dt_s;
-    still->way_m = saddle_vec2_add(still->way_m, saddle_vec2_scale(dt_s, velocity_m_s));
+    timer->unchanged_s += dt_s;
+    timer->moved_m = saddle_vec2_add(timer->moved_m, saddle_vec2_scale(dt_s, velocity_m_s));
 }
 
 /* The CoM moved over a foot whose place relative to it did not. */
 static bool foot_frozen(saddle_plausibility_t *plausibility, const saddle_model_t *model,
                         const saddle_measurement_t *measurement, saddle_side_t side, float dt_s)
 {
-    saddle_still_t *still = &plausibility->foot_still[side];
+    saddle_frozen_timer_t *timer = &plausibility->foot_timer[side];
     const saddle_vec2_t velocity_m_s = measurement->com.velocity_m_s;
     const bool unchanged = same(measurement->foot[side].cop_m, plausibility->cop_m[side]) &&
                            !vec2_within(velocity_m_s, REST_M_S);
-    follow_still(still, unchanged, velocity_m_s, dt_s);
-    return still->still_s > model->config.foot_max_age_s &&
-           !vec2_within(still->way_m, FROZEN_WAY_M);
+    follow_timer(timer, unchanged, velocity_m_s, dt_s);
+    return timer->unchanged_s > model->config.foot_max_age_s &&
+           !vec2_within(timer->moved_m, FROZEN_DISTANCE_M);
 }
 
 /* A foot on the ground is where it was, if the CoM went the way that its velocity says. */
@@ -100,7 +100,7 @@ static bool contradicts(saddle_vec2_t *anchor_m, bool anchored, saddle_vec2_t co
         *anchor_m = place_m;
         return false;
     }
-    return !vec2_within(saddle_vec2_sub(place_m, *anchor_m), FROZEN_WAY_M);
+    return !vec2_within(saddle_vec2_sub(place_m, *anchor_m), FROZEN_DISTANCE_M);
 }
 
 /* The CoM kept its bits, and a foot on the ground went another way than they say, or a walk was
@@ -108,28 +108,28 @@ static bool contradicts(saddle_vec2_t *anchor_m, bool anchored, saddle_vec2_t co
 static bool com_frozen(saddle_plausibility_t *plausibility, const saddle_model_t *model,
                        const saddle_measurement_t *measurement, float planned_m_s, float dt_s)
 {
-    saddle_still_t *still = &plausibility->com_still;
+    saddle_frozen_timer_t *timer = &plausibility->com_timer;
     const bool unchanged = measurement->com.height_m == plausibility->height_m &&
                            same(measurement->com.velocity_m_s, plausibility->velocity_m_s);
-    follow_still(still, unchanged, measurement->com.velocity_m_s, dt_s);
-    plausibility->planned_way_m =
-        unchanged ? plausibility->planned_way_m + planned_m_s * dt_s : 0.0f;
-    plausibility->com_contradicted =
-        (plausibility->com_contradicted && unchanged) || plausibility->planned_way_m > FROZEN_WAY_M;
+    follow_timer(timer, unchanged, measurement->com.velocity_m_s, dt_s);
+    plausibility->planned_distance_m =
+        unchanged ? plausibility->planned_distance_m + planned_m_s * dt_s : 0.0f;
+    plausibility->com_contradicted = (plausibility->com_contradicted && unchanged) ||
+                                     plausibility->planned_distance_m > FROZEN_DISTANCE_M;
     for (int side = 0; side < 2; side++) {
         const bool contact = measurement->foot[side].contact;
         const bool anchored = unchanged && contact && plausibility->stood[side];
         plausibility->stood[side] = contact;
         if (contradicts(&plausibility->anchor_m[side], anchored, measurement->foot[side].cop_m,
-                        still->way_m)) {
+                        timer->moved_m)) {
             plausibility->com_contradicted = true;
         }
     }
-    return plausibility->com_contradicted && still->still_s > model->config.com_max_age_s;
+    return plausibility->com_contradicted && timer->unchanged_s > model->config.com_max_age_s;
 }
 
-static uint32_t judge_alive(saddle_plausibility_t *plausibility, const saddle_model_t *model,
-                            const saddle_measurement_t *measurement, float planned_m_s, float dt_s)
+static uint32_t check_frozen(saddle_plausibility_t *plausibility, const saddle_model_t *model,
+                             const saddle_measurement_t *measurement, float planned_m_s, float dt_s)
 {
     uint32_t faults = 0;
     if (com_frozen(plausibility, model, measurement, planned_m_s, dt_s)) {
@@ -149,19 +149,19 @@ static uint32_t judge_alive(saddle_plausibility_t *plausibility, const saddle_mo
 }
 
 /* What was not measured contradicts nothing. */
-static void forget_still(saddle_plausibility_t *plausibility)
+static void forget_frozen(saddle_plausibility_t *plausibility)
 {
-    const saddle_still_t none = {.still_s = 0.0f};
-    plausibility->com_still = none;
-    plausibility->planned_way_m = 0.0f;
+    const saddle_frozen_timer_t none = {.unchanged_s = 0.0f};
+    plausibility->com_timer = none;
+    plausibility->planned_distance_m = 0.0f;
     plausibility->com_contradicted = false;
     for (int side = 0; side < 2; side++) {
-        plausibility->foot_still[side] = none;
+        plausibility->foot_timer[side] = none;
         plausibility->stood[side] = false;
     }
 }
 
-static uint32_t judge_feet(saddle_plausibility_t *plausibility, const saddle_model_t *model,
+static uint32_t check_feet(saddle_plausibility_t *plausibility, const saddle_model_t *model,
                            const saddle_measurement_t *measurement, float dt_s)
 {
     const float width_m =
@@ -184,15 +184,15 @@ uint32_t saddle_measurement_check(saddle_plausibility_t *plausibility, const sad
                                   float dt_s)
 {
     const uint32_t feet =
-        judge_foot(model, measurement, SADDLE_LEFT) | judge_foot(model, measurement, SADDLE_RIGHT);
-    uint32_t faults = judge_com(model, measurement) | feet;
+        check_foot(model, measurement, SADDLE_LEFT) | check_foot(model, measurement, SADDLE_RIGHT);
+    uint32_t faults = check_com(model, measurement) | feet;
     if (feet == 0u) {
-        faults |= judge_feet(plausibility, model, measurement, dt_s);
+        faults |= check_feet(plausibility, model, measurement, dt_s);
     }
     if ((faults & (SADDLE_FAULTS_COM | SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT)) == 0u) {
-        faults |= judge_alive(plausibility, model, measurement, planned_m_s, dt_s);
+        faults |= check_frozen(plausibility, model, measurement, planned_m_s, dt_s);
     } else {
-        forget_still(plausibility);
+        forget_frozen(plausibility);
     }
     return faults;
 }

@@ -4,10 +4,9 @@
 
 #include <saddlewalk/private/context.h>
 
-/** Follow one measurement judged by saddle_judge(). A foot that was in the air for less than 0.12 s
- *  did not step. What is older than step_time_max_s is forgotten, or older than a step that could not
- *  be measured. Standing is seen when both feet
- *  carry and the CoM is slower than 0.2 m/s. */
+/** Take one measurement and its faults. A foot that was in the air for less than 0.12 s did not
+ *  step. A step older than step_time_max_s is forgotten, and so is one before a step that could not be
+ *  measured. Standing is detected when both feet carry and the CoM is slower than 0.2 m/s. */
 void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_model_t *model,
                         const saddle_measurement_t *measurement, uint32_t faults, float dt_s);
 

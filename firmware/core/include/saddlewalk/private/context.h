@@ -19,8 +19,8 @@ typedef struct {
     float half_step_slope_s[2];    /**< of the step that each foot makes, [E4] */
     saddle_fixed_t half_step_intercept[2];
     float ankle_work_j;            /**< W_max, [E27] */
-    float foresight_growth;        /**< of a deviation within foresight_s, [E29], */
-    float foresight_free_growth;   /**< and of that once the trailing foot has lifted off */
+    float horizon_growth;        /**< of a deviation within prediction_horizon_s, [E29], */
+    float horizon_free_growth;   /**< and of that once the trailing foot has lifted off */
     float com_height_min_m;        /**< a lower CoM is below the knees */
     float crawl_m_s;               /**< a stop goes on at no less until it brakes, */
     float braked_in_a_step_m_s;    /**< and at no more: every step is long enough to brake from it */
@@ -37,7 +37,7 @@ typedef struct {
 
 /* ---- motion --------------------------------------------------------------------------------- */
 
-/** A value over a way, and its derivative. */
+/** A value over a distance, and its derivative. */
 typedef struct {
     float value;
     float slope;
@@ -46,8 +46,8 @@ typedef struct {
 /** A mismatch that fades out. */
 typedef struct {
     saddle_sample_t start; /**< mismatch where the fading begins */
-    float start_m;         /**< place on the way */
-    float length_m;        /**< until it has gone; 0: there is none */
+    float start_m;         /**< where along it */
+    float length_m;        /**< until it is gone; 0: no mismatch */
 } saddle_blend_t;
 
 /** One quarter of the stride: from beside the stance foot (foot via point) to midway between the
@@ -81,7 +81,7 @@ typedef struct {
 typedef struct {
     float heel_strike_rad;  /**< commanded angle of the foot at heel strike */
     float toe_off_rad;      /**< toe-off angle when the heel strikes, [E13] */
-    float heel_strike_lead_m; /**< way of the CoM from heel strike to saddle via point, [E12] */
+    float heel_strike_lead_m; /**< CoM distance from heel strike to saddle via point, [E12] */
     bool toe_off_limited;   /**< the geometry asks for an angle outside [0, pi] */
 } saddle_transition_t;
 
@@ -95,7 +95,7 @@ typedef struct {
     bool last_swing;              /**< the running step ends beside the stance foot: a stop */
     uint32_t step_count;          /**< changes of the stance foot */
     uint32_t stride_count;        /**< times that phase 0 was entered again */
-    int64_t origin_x_nm;          /**< way to the stance foot */
+    int64_t origin_x_nm;          /**< distance to the stance foot */
     float stance_y_m;
     saddle_blend_t lateral;       /**< mismatch of CoM y */
     saddle_blend_t vertical;      /**< mismatch of CoM z, cycloid only */
@@ -124,21 +124,21 @@ typedef struct {
 
 /* ---- senses --------------------------------------------------------------------------------- */
 
-/** A number that keeps its bits: since when, and what the rest of the body did meanwhile. */
+/** A number that keeps its bits: for how long, and how far the CoM moved meanwhile. */
 typedef struct {
-    float still_s;
-    saddle_vec2_t way_m; /**< of the CoM since then */
-} saddle_still_t;
+    float unchanged_s;
+    saddle_vec2_t moved_m; /**< of the CoM since then */
+} saddle_frozen_timer_t;
 
 /** What the check of the measurements remembers. */
 typedef struct {
-    saddle_vec2_t velocity_m_s, cop_m[2]; /**< last believed */
+    saddle_vec2_t velocity_m_s, cop_m[2]; /**< last accepted */
     float height_m;
-    saddle_still_t com_still, foot_still[2];
-    saddle_vec2_t anchor_m[2]; /**< where a foot on the ground should stay: CoP + way_m of the CoM,
+    saddle_frozen_timer_t com_timer, foot_timer[2];
+    saddle_vec2_t anchor_m[2]; /**< where a foot on the ground should stay: CoP + moved_m of the CoM,
                                     since it landed or the CoM is still */
     bool stood[2];             /**< the foot was on the ground at the last judgement */
-    float planned_way_m;       /**< since the CoM is still */
+    float planned_distance_m;       /**< since the CoM is still */
     bool com_contradicted;     /**< a foot has left its place, or the plan has */
     float flight_s;      /**< since both feet are in the air */
 } saddle_plausibility_t;
