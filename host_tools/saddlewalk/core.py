@@ -1,6 +1,7 @@
 """The C core in this process: the library that firmware links, called through its own headers."""
 
 import functools
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -8,11 +9,9 @@ from typing import Any
 import cffi
 
 from saddlewalk.errors import UserError
-from saddlewalk.paths import built
+from saddlewalk.paths import CHECKOUT, built, need_checkout
 
-AGE_NEVER_US = 0xFFFFFFFF
-TIME_MAX_S = 1000.0  # SADDLE_TIME_MAX_S: an event of a plan that is not foreseen
-BOS_VERTICES = 16  # SADDLE_BOS_VERTICES
+AGE_NEVER_US = 0xFFFFFFFF  # SADDLE_AGE_NEVER_US
 
 
 @functools.cache
@@ -26,6 +25,14 @@ def ffi() -> cffi.FFI:
 @functools.cache
 def library() -> Any:
     return ffi().dlopen(str(built("lib/libsaddlewalk.so")))
+
+
+def defined(name: str, header: str = "core/include/saddlewalk/types.h") -> float:
+    """The number that a header of the firmware gives a macro, which cffi does not see."""
+    need_checkout()
+    text = (CHECKOUT / "firmware" / header).read_text()
+    (number,) = re.findall(rf"^#define {name} ([0-9.]+)[fu]?$", text, re.MULTILINE)
+    return float(number)
 
 
 @dataclass(frozen=True)
@@ -127,7 +134,7 @@ def bos_polygon(config: Any, cops_m: Sequence[Sequence[float]]) -> list[tuple[fl
     bos = ffi().new(
         "saddle_bos_t *", library().saddle_bos(cops, config.cop_range_m, config.bos_factor)
     )
-    vertices = ffi().new("saddle_vec2_t[]", BOS_VERTICES)
+    vertices = ffi().new("saddle_vec2_t[]", int(defined("SADDLE_BOS_VERTICES")))
     library().saddle_bos_polygon(bos, vertices)
     return [(vertex.x, vertex.y) for vertex in vertices]
 

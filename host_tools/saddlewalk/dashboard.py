@@ -15,41 +15,21 @@ from rich.table import Table
 from rich.text import Text
 
 from saddlewalk import process_words
-from saddlewalk.core import TIME_MAX_S
+from saddlewalk.contract import (
+    FAULTS,
+    LEVELS,
+    LIMITS,
+    MODES,
+    SIDES,
+    STATUSES,
+    TIME_MAX_S,
+    bit_names,
+    name_of,
+)
 from saddlewalk.letters import large
-from saddlewalk.verdict import LEVELS, level_name, reason_words
+from saddlewalk.verdict import level_name, reason_words
 
 SILENT_AFTER_S = 1.0
-
-# By number, as saddle_status_t and saddle_mode_t; bit 0 first, as saddle_limit_t, saddle_fault_t.
-STATUSES = (
-    "OK",
-    "ERROR_NULL",
-    "ERROR_CONFIG",
-    "ERROR_UNINITIALISED",
-    "ERROR_TIME",
-    "ERROR_COMMAND",
-    "ERROR_BUILD",
-)
-MODES = ("standing", "starting", "walking", "stopping")
-LIMITS = ("SPEED", "HEEL_STRIKE", "TOE_OFF", "FEET", "TICK_GAP", "SAFE_STOP")
-FAULTS = (
-    "COMMAND",
-    "COM_STALE",
-    "COM_RANGE",
-    "LEFT_STALE",
-    "LEFT_RANGE",
-    "RIGHT_STALE",
-    "RIGHT_RANGE",
-    "FEET_TOGETHER",
-    "SPEED_INFEASIBLE",
-    "COM_FROZEN",
-    "LEFT_FROZEN",
-    "RIGHT_FROZEN",
-    "AIRBORNE",
-    "FEET_CROSSED",
-    "COMMAND_STALE",
-)
 
 MISSING = {
     "COMMAND_STALE": "commands",
@@ -134,10 +114,10 @@ def gait(plan) -> str:
         return "plan: none yet"
     if not plan.valid:
         return "plan: none"
-    mode = MODES[plan.mode] if 0 <= plan.mode < len(MODES) else f"mode {plan.mode}"
+    mode = name_of(plan.mode, MODES, "mode")
     if plan.mode == plan.MODE_STANDING:
         return f"plan: {mode} after {plan.step_count} steps"
-    support = "left" if plan.support == plan.LEFT else "right"
+    support = SIDES[plan.support == plan.RIGHT]
     turn = plan.theta_rad / (2 * math.pi)
     return (
         f"plan: {mode}, step {plan.step_count}, phase {plan.phase} ({turn:4.0%} of the stride), "
@@ -172,12 +152,11 @@ def recovery_step(verdict) -> str:
         return NOT_AVAILABLE
     if not verdict.recovery_found:
         return f"none within reach, {-verdict.recovery_margin_m:.2f} m lacking"
-    feet = ("left", "right")
     foot = verdict.recovery_foot == verdict.RIGHT
     x_m, y_m = verdict.recovery_landing_m
     return (
-        f"{feet[foot]} foot {abs(x_m):.2f} m {'behind' if x_m < 0 else 'ahead'} and "
-        f"{abs(y_m):.2f} m to the {'right' if y_m < 0 else 'left'} of the {feet[not foot]} one, "
+        f"{SIDES[foot]} foot {abs(x_m):.2f} m {'behind' if x_m < 0 else 'ahead'} and "
+        f"{abs(y_m):.2f} m to the {'right' if y_m < 0 else 'left'} of the {SIDES[not foot]} one, "
         f"{verdict.recovery_margin_m:.2f} m of reach left"
         + (", ends the walk" if verdict.recovery_stops else "")
     )
@@ -197,7 +176,7 @@ def condition(health) -> str:
         f"frames rejected {rejected}",
     ]
     if health.status:
-        parts.append(f"status {_status_name(health.status)}")
+        parts.append(f"status {name_of(health.status, STATUSES)}")
     parts += [
         f"{label} {' '.join(names)}"
         for label, names in (
@@ -217,19 +196,6 @@ def safe_stop(health) -> str:
     missing = [words for fault, words in MISSING.items() if fault in faults]
     why = " and ".join(missing) + " missing" if missing else "inputs not yet good for long enough"
     return f"; SAFE STOP, the walk ends: {why}"
-
-
-def bit_names(bits: int, names: tuple[str, ...]) -> list[str]:
-    """Names of the bits that are set; a bit without a name is given as its number."""
-    return [
-        names[bit] if bit < len(names) else f"bit{bit}"
-        for bit in range(bits.bit_length())
-        if bits >> bit & 1
-    ]
-
-
-def _status_name(status: int) -> str:
-    return STATUSES[status] if 0 <= status < len(STATUSES) else str(status)
 
 
 def _numbers(scores, verdict) -> list[tuple[str, object, str]]:

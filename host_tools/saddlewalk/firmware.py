@@ -5,10 +5,10 @@ from typing import Any
 
 import cffi
 
+from saddlewalk.contract import OUTPUT_FRAMES
 from saddlewalk.core import describe_bad_field
 from saddlewalk.errors import UserError
 from saddlewalk.paths import built
-from saddlewalk.ticks import MESSAGES
 from saddlewalk.transport.wire import identifier
 
 _OF_PROCESS = {identifier(name) for name in ("TIMING", "RECEIVED", "INPUTS")}
@@ -76,7 +76,7 @@ class Firmware:
 
         Without the messages that tell only of the host process, which no input decides.
         """
-        frames = ffi().new("saddle_frame_t[]", len(MESSAGES))
+        frames = ffi().new("saddle_frame_t[]", OUTPUT_FRAMES)
         health = ffi().new("saddle_wire_health_t *")
         health.late_ticks, health.rejected_frames = late_ticks, rejected_frames
         library().saddle_wire_encode_output(self.output, health, counter, frames)

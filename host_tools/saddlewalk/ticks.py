@@ -7,7 +7,6 @@ import can
 
 from saddlewalk.transport.wire import Receiver
 
-TICK_S = 0.08
 PLAN_MESSAGES = (
     "PLAN_COM PLAN_COM_VELOCITY PLAN_LEFT PLAN_RIGHT PLAN_SWING PLAN_LANDING PLAN_ANKLE PLAN_STEP "
     "PLAN_EVENTS PLAN_PITCH"

@@ -4,11 +4,10 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
+from saddlewalk.contract import LEVELS, REASONS, name_of
 from saddlewalk.table import Cell
 
-# By number: saddle_level_t, saddle_reason_t.
-LEVELS = ("unknown", "stable", "caution", "unstable")
-REASONS = {
+REASON_WORDS = {
     "none": "",
     "input": "a measurement is missing or cannot be believed",
     "no_walk": "nothing is planned, and nobody was seen to stand or to complete a step",
@@ -34,18 +33,17 @@ COLUMNS = (
 
 
 def level_name(level: int) -> str:
-    return LEVELS[level] if 0 <= level < len(LEVELS) else f"level {level}"
+    return name_of(level, LEVELS, "level")
 
 
 def reason_name(reason: int) -> str:
-    names = tuple(REASONS)
-    return names[reason] if 0 <= reason < len(names) else f"reason {reason}"
+    return name_of(reason, REASONS, "reason")
 
 
 def reason_words(reason: int) -> str:
     """What decided the level, for people; empty if nothing is amiss."""
     name = reason_name(reason)
-    return REASONS.get(name, name)
+    return REASON_WORDS.get(name, name)
 
 
 def cells(signals: Mapping[str, float]) -> list[Cell]:

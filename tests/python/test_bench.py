@@ -13,7 +13,7 @@ import pytest
 from saddlewalk.benchmark import instructions
 from saddlewalk.benchmark import timing as bench
 from saddlewalk.benchmark.neighbours import MissingError
-from saddlewalk.benchmark.neighbours.numpy_plan import GRAVITY_M_S2, margin, plan
+from saddlewalk.benchmark.neighbours.numpy_plan import margin, plan
 from saddlewalk.benchmark.neighbours.octave_plan import ROWS, Octave
 from saddlewalk.benchmark.neighbours.walking_qp import (
     JERK_WEIGHT_S6,
@@ -25,13 +25,13 @@ from saddlewalk.benchmark.neighbours.walking_qp import (
 )
 from saddlewalk.benchmark.timing import (
     BODY,
-    PERIOD_S,
     CorePlan,
     calls_of_plan,
     instants,
     neighbours,
 )
 from saddlewalk.cli import main
+from saddlewalk.contract import GRAVITY_M_S2, LEVELS, MODES, TICK_S
 from saddlewalk.paths import build_dir
 from saddlewalk.planning.steady import COLUMNS, row_of
 from twin import bos_margin
@@ -61,7 +61,7 @@ def core_plan(speed: float, angle_deg: float) -> dict[str, np.ndarray]:
 
 
 def stride(speed: float) -> np.ndarray:
-    return np.arange(0, 4 * (0.1802 * speed + 0.1351) / speed, PERIOD_S)
+    return np.arange(0, 4 * (0.1802 * speed + 0.1351) / speed, TICK_S)
 
 
 @pytest.mark.parametrize("speed", SPEEDS)
@@ -177,7 +177,7 @@ def test_instructions_of_every_kind_of_tick():
             instructions.count()
         return
     groups = {group.name: group for group in instructions.count()}
-    kinds = [*instructions.MODES, *instructions.LEVELS, "invalid inputs"]
+    kinds = [*MODES, *LEVELS, "invalid inputs"]
     assert {f"tick, {kind}" for kind in kinds} < set(groups)
     every = groups[instructions.ALL_TICKS]
     assert every.updates == 5 * 160

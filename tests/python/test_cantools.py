@@ -62,9 +62,11 @@ def test_cantools_monitor_shows_the_live_firmware(spec):
     command = [program("cantools"), "monitor", "-s", *interface_options(spec), DATABASE]
     with Host("--lcm=none", spec=spec), on_a_terminal(command) as screen:
         wanted = [
-            r"HEALTH\(CRC: \d+, COUNTER: \d+, STATUS: 0, ",
+            r"HEALTH\(CRC: \d+, COUNTER: \d+, STATUS: OK, ",
             r"PLAN_COM\(CRC: \d+, COUNTER: \d+, X: 0\.0 m, Y: 0\.0 m, Z: 1\.0\d+ m\)",
-            r"VERDICT\(.*LEVEL: ",
+            r"PLAN_EVENTS\(.*MODE: STANDING, ",
+            r"VERDICT\(.*LEVEL: UNKNOWN, REASON: INPUT, XCOM_DEVIATION_X: NOT_AVAILABLE",
+            r"SCORES_FORCE\(.*FAULTS: \d+",
         ]
         shown = until_shown(screen, wanted)
         for pattern in wanted:

@@ -16,9 +16,10 @@ import pytest
 from host_node import MESSAGES_PER_TICK, STANDING, WALK, own_lcm
 from saddlewalk.cli import main
 from saddlewalk.config import configuration
+from saddlewalk.contract import TICK_S
 from saddlewalk.emulation import exoskeleton, qemu
 from saddlewalk.errors import UserError
-from saddlewalk.ticks import TICK_S, TickReader, next_tick
+from saddlewalk.ticks import TickReader, next_tick
 from saddlewalk.transport.bus import private_udp
 from saddlewalk.transport.slcan import SlcanBus, frame_of, text_of
 from saddlewalk.transport.wire import FRAME_LENGTH, Sender, message_name

@@ -20,9 +20,9 @@ import pytest
 
 from saddlewalk.cli import main
 from saddlewalk.config import load_config
+from saddlewalk.contract import TICK_S
 from saddlewalk.emulation.wearer import Push
 from saddlewalk.logs.recorder import CHANNELS, COLUMNS
-from saddlewalk.ticks import TICK_S
 from saddlewalk.transport.bus import open_bus, private_udp
 
 FILES = {"walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"}

@@ -8,16 +8,13 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main
+from saddlewalk.contract import LEFT, RIGHT, STANDING, TICK_S, WALKING
 from saddlewalk.core import ffi, library
 from saddlewalk.emulation import closed_loop
 from saddlewalk.emulation.closed_loop import Tick
 from saddlewalk.emulation.wearer import (
     ARRIVED_M,
-    LEFT,
-    RIGHT,
-    STANDING,
     STEP_S,
-    WALKING,
     Body,
     Noise,
     Plan,
@@ -27,7 +24,6 @@ from saddlewalk.emulation.wearer import (
     Wearer,
 )
 from saddlewalk.planning.schedule import schedule_of
-from saddlewalk.ticks import TICK_S
 
 STEADY = Noise(0.0, 0.0, 0.0)
 

@@ -14,8 +14,7 @@ import lcm
 import pytest
 from rich.console import Console
 
-from saddlewalk import core, dashboard, paths, process_words
-from saddlewalk import verdict as verdicts
+from saddlewalk import contract, dashboard, process_words
 from saddlewalk.commands.monitor import CHANNELS, Listener
 from saddlewalk.letters import large
 from saddlewalk.transport.lcm_types import health_t, plan_t, scores_t, status_t, verdict_t
@@ -150,7 +149,7 @@ def test_the_level_comes_first_and_large_and_in_words():
     assert dashboard.summary(*view()).startswith("CAUTION: sideways")
 
 
-@pytest.mark.parametrize("name", verdicts.LEVELS)
+@pytest.mark.parametrize("name", contract.LEVELS)
 def test_every_level_can_be_written_large(name):
     rows = large(name.upper()).splitlines()
     assert len(rows) == 3 and len({len(row) for row in rows}) == 1
@@ -235,8 +234,8 @@ def test_energies_that_are_not_known_are_not_judged():
 def test_a_safe_stop_is_said_with_what_is_missing(faults, words):
     message = health()
     assert "SAFE STOP" not in dashboard.condition(message)
-    message.limits = 1 << dashboard.LIMITS.index("SAFE_STOP")
-    message.faults = sum(1 << dashboard.FAULTS.index(fault) for fault in faults)
+    message.limits = 1 << contract.LIMITS.index("SAFE_STOP")
+    message.faults = sum(1 << contract.FAULTS.index(fault) for fault in faults)
     assert dashboard.condition(message).endswith(f"; SAFE STOP, the walk ends: {words}")
 
 
@@ -315,35 +314,6 @@ def test_faults_limits_and_status_are_named():
     assert "never measured" in text
     message.status, message.limits = 99, -1
     assert "status 99" in dashboard.condition(message)
-
-
-@pytest.mark.parametrize(
-    ("numbered", "names"),
-    [
-        (r"SADDLE_(ERROR_\w+) = \d", dashboard.STATUSES[1:]),
-        (r"SADDLE_MODE_(\w+) = \d", tuple(map(str.upper, dashboard.MODES))),
-        (r"SADDLE_LIMIT_(\w+) = 1u << \d", dashboard.LIMITS),
-        (r"SADDLE_FAULT_(\w+) = 1u << \d", dashboard.FAULTS),
-        (r"SADDLE_LEVEL_(\w+) = \d", tuple(map(str.upper, verdicts.LEVELS))),
-        (r"SADDLE_REASON_(\w+) = \d", tuple(map(str.upper, verdicts.REASONS))),
-    ],
-)
-def test_names_are_those_of_the_core(numbered, names):
-    headers = (paths.CHECKOUT / "firmware/core/include/saddlewalk").rglob("*.h")
-    text = "".join(header.read_text() for header in headers)
-    assert re.findall(numbered, text) == list(names)
-
-
-def test_lcm_has_the_same_levels_and_reasons():
-    for kind, names in (("LEVEL", verdicts.LEVELS), ("REASON", verdicts.REASONS)):
-        for number, name in enumerate(names):
-            assert getattr(verdict_t, f"{kind}_{name.upper()}") == number
-
-
-def test_the_longest_time_is_that_of_the_core():
-    header = paths.CHECKOUT / "firmware/core/include/saddlewalk/types.h"
-    (defined,) = re.findall(r"#define SADDLE_TIME_MAX_S (\S+)f", header.read_text())
-    assert float(defined) == core.TIME_MAX_S
 
 
 @pytest.mark.parametrize(

@@ -9,13 +9,12 @@ import time
 import pytest
 
 from host_node import own_lcm
+from saddlewalk.contract import RIGHT, STARTING, TICK_S
 from saddlewalk.emulation.exoskeleton import Exoskeleton, Observer
 from saddlewalk.emulation.host import running_host
 from saddlewalk.emulation.paced_ticks import ARRIVALS, WAKE_UP_S, PacedTicks
 from saddlewalk.emulation.punctuality import Punctuality, Stall
-from saddlewalk.emulation.wearer import RIGHT, STARTING
 from saddlewalk.errors import UserError
-from saddlewalk.ticks import TICK_S
 from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.lcmbus import open_lcm
 

@@ -18,6 +18,7 @@ import pytest
 from saddlewalk import paths
 from saddlewalk.cli import main
 from saddlewalk.config import configuration
+from saddlewalk.contract import LEVELS
 from saddlewalk.emulation import closed_loop
 from saddlewalk.emulation.wearer import Body, Wearer
 from saddlewalk.evaluation import walks
@@ -44,7 +45,7 @@ from saddlewalk.evaluation.scoring import (
 from saddlewalk.evaluation.walks import EXACT_SENSORS, draw, judge
 from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.recorded_states import STATE_COLUMNS
-from saddlewalk.verdict import LEVELS, reason_name
+from saddlewalk.verdict import reason_name
 from synthetic_falls import RUNS, write_csv, write_folder
 
 SHARED = paths.CHECKOUT.parent / "shared"

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main
-from saddlewalk.commands.replay import SCORE_COLUMNS
+from saddlewalk.contract import TICK_S
 from saddlewalk.core import Command, Core, Measurement, ffi, library
 from saddlewalk.errors import UserError
 from saddlewalk.gait import playback
@@ -26,10 +26,11 @@ from saddlewalk.gait.playback import (
     play_realtime,
     states_at_ticks,
 )
+from saddlewalk.gait.replayed import SCORE_COLUMNS
 from saddlewalk.paths import CHECKOUT
 from saddlewalk.recorded_states import STATE_COLUMNS
 from saddlewalk.table import format_cell
-from saddlewalk.ticks import LEARNED_MESSAGES, PLAN_MESSAGES, TICK_S, Messages
+from saddlewalk.ticks import LEARNED_MESSAGES, PLAN_MESSAGES, Messages
 from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.wire import Receiver, Sender
 from synthetic_walk import Walk, csv_text
@@ -285,8 +286,8 @@ def test_the_host_answers_as_the_core_fed_offline_with_the_same_frames(capsys, t
     assert main(["replay", str(trial), "--out", str(out)]) == 0
     printed = told(capsys.readouterr().out)
 
-    from saddlewalk.commands.replay import report, score_row
     from saddlewalk.gait.recording import load_recording
+    from saddlewalk.gait.replayed import report, score_row
 
     read = load_recording(str(trial))
     gait = analyse(read)

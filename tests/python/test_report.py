@@ -13,14 +13,14 @@ import pytest
 from matplotlib.figure import Figure
 
 from saddlewalk.cli import main
+from saddlewalk.contract import LEVELS, TICK_S
 from saddlewalk.logs.messages import decode
 from saddlewalk.session import page as session_page
 from saddlewalk.session import pictures
 from saddlewalk.session.runs import load_session
 from saddlewalk.session.steps import variability
-from saddlewalk.ticks import TICK_S
 from saddlewalk.transport.lcm_log import Event, LcmLog
-from saddlewalk.verdict import LEVELS, reason_words
+from saddlewalk.verdict import reason_words
 
 TICKS = 163  # of the walk of 13 s
 AGES = ("age of", "median (ms)", "95 % below (ms)", "oldest (ms)", "ticks before it came")

@@ -12,11 +12,10 @@ from pathlib import Path
 
 from saddlewalk.benchmark.neighbours import MissingError
 from saddlewalk.benchmark.timing import told_calls
+from saddlewalk.contract import LEVELS, MODES
 from saddlewalk.paths import built
 
 UPDATE, FLOOR, INIT = "saddle_bench_update", "saddle_bench_floor", "saddle_init"
-MODES = ("standing", "starting", "walking", "stopping")  # saddle_mode_t
-LEVELS = ("unknown", "stable", "caution", "unstable")  # saddle_level_t
 PLAN_WALK, INVALID_WALK = 0, 5  # walks.h
 ALL_TICKS = "every tick"
 

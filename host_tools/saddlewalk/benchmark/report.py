@@ -12,12 +12,12 @@ from saddlewalk.benchmark.timing import (
     HORIZONS,
     NUMPY,
     NUMPY_AT_ONCE,
-    PERIOD_S,
     QPS,
     SPEED_M_S,
     Timing,
     instants,
 )
+from saddlewalk.contract import TICK_S
 
 ONE, TEN = HORIZONS
 
@@ -97,7 +97,7 @@ class Report:
         ]
 
     def lines(self) -> Iterator[str]:
-        yield f"A walk at {SPEED_M_S} m/s, planned every {round(PERIOD_S * 1e3)} ms with scores,"
+        yield f"A walk at {SPEED_M_S} m/s, planned every {round(TICK_S * 1e3)} ms with scores,"
         yield f"gravity and margins; {self.rounds} rounds in turns on {processor()}"
         yield ""
         heads = "".join(
@@ -138,7 +138,7 @@ class Report:
         return {
             "processor": processor(),
             "speed_m_s": SPEED_M_S,
-            "period_s": PERIOD_S,
+            "period_s": TICK_S,
             "rounds": self.rounds,
             "planning": [self._timing_dict(timing) for timing in self.timings.values()],
             "instructions": [asdict(group) for group in self.groups],

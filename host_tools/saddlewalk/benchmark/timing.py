@@ -20,12 +20,12 @@ from saddlewalk.benchmark.neighbours.numpy_plan import Body, plan, step_width
 from saddlewalk.benchmark.neighbours.octave_plan import Octave
 from saddlewalk.benchmark.neighbours.placo_walk import FOOT_LENGTH_M, FOOT_WIDTH_M, PlacoWalk
 from saddlewalk.benchmark.neighbours.walking_qp import SOLVERS, Axis, Preview, WalkingQp
+from saddlewalk.contract import TICK_S
 from saddlewalk.errors import UserError
 from saddlewalk.paths import built
 
 SPEED_M_S = 1.2
 HEEL_STRIKE_RAD = math.radians(10)
-PERIOD_S = 0.08
 HORIZONS = (1, 10)  # strides
 BODY = Body()
 STEP_M = 2 * (0.1802 * SPEED_M_S + 0.1351)
@@ -51,7 +51,7 @@ QPS = (*map(qp_name, SOLVERS), PLACO)
 
 def instants(strides: int) -> np.ndarray:
     """When the plan is wanted, s: from 0, while the strides last."""
-    return PERIOD_S * np.arange(math.floor(strides * 2 * STEP_TIME_S / PERIOD_S + 1e-9) + 1)
+    return TICK_S * np.arange(math.floor(strides * 2 * STEP_TIME_S / TICK_S + 1e-9) + 1)
 
 
 @functools.cache
@@ -83,7 +83,7 @@ class CorePlan:
     def plan(self, count: int) -> float:
         """Seconds; the plan is in outputs and scores."""
         nanoseconds = _library()[1].saddle_bench_plan_ns(
-            self._context, self._command, round(PERIOD_S * 1e6), count, self.outputs, self.scores
+            self._context, self._command, round(TICK_S * 1e6), count, self.outputs, self.scores
         )
         if nanoseconds == 0:
             raise ValueError("the core refuses to plan")
@@ -154,12 +154,12 @@ def _octave(at_once: bool) -> Run:
 
 
 def preview(strides: int) -> Preview:
-    return Preview(len(instants(strides)), PERIOD_S, PENDULUM_M)
+    return Preview(len(instants(strides)), TICK_S, PENDULUM_M)
 
 
 def axes(strides: int) -> tuple[Axis, Axis]:
     """The paper's walk for the walking QP: from the left foot via point, over the same feet."""
-    t_s = instants(strides) + PERIOD_S
+    t_s = instants(strides) + TICK_S
     steps = np.floor(t_s / STEP_TIME_S + 0.5)
     side = np.where(np.mod(steps, 2) == 0, WIDTH_M / 2, -WIDTH_M / 2)
     start = plan(BODY, SPEED_M_S, HEEL_STRIKE_RAD, np.zeros(1))
@@ -176,7 +176,7 @@ def _walking_qp(solver: str) -> Run:
 
 
 def _placo() -> Run:
-    walk = PlacoWalk(STEP_M, STEP_TIME_S, WIDTH_M, PENDULUM_M, PERIOD_S)
+    walk = PlacoWalk(STEP_M, STEP_TIME_S, WIDTH_M, PENDULUM_M, TICK_S)
     return timed(lambda strides: walk.plan(2 * strides))
 
 

@@ -279,7 +279,7 @@ def _finish(
 
 def level_times(recorder: "Recorder") -> str:
     """For how long each level was announced."""
-    from saddlewalk.ticks import TICK_S
+    from saddlewalk.contract import TICK_S
     from saddlewalk.verdict import ticks_in
 
     told = ticks_in(recorder.levels).items()

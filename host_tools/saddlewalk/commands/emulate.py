@@ -180,8 +180,8 @@ def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":
 
 def events_printer(wearer: "Wearer") -> Any:
     """An observer that tells what the plan is doing, each push and a fall."""
+    from saddlewalk.contract import MODES
     from saddlewalk.emulation.exoskeleton import Observer
-    from saddlewalk.emulation.wearer import MODES
 
     class Events(Observer):
         def __init__(self) -> None:

@@ -13,14 +13,9 @@ from saddlewalk.config import ANKLES, add_body_options, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.options import add_gait_options, number_in, whole_number_in
 from saddlewalk.outputs import OutputFile, add_output
-from saddlewalk.planning.steady import COLUMNS, row_of, walk
 from saddlewalk.table import Cell, write_table
 
-SCHEDULE_COLUMNS = (
-    *COLUMNS,
-    *"mode time_to_heel_strike_s time_to_toe_off_s event event_t_s".split(),
-)
-
+EVENT_COLUMNS = "mode time_to_heel_strike_s time_to_toe_off_s event event_t_s".split()
 SHORTEST_DT_S = 1e-5
 
 
@@ -82,6 +77,7 @@ def _refuse_mixture(args: argparse.Namespace) -> None:
 
 def _plan_steady(args: argparse.Namespace) -> int:
     from saddlewalk.core import Core, library
+    from saddlewalk.planning.steady import COLUMNS, row_of, walk
 
     core = Core(load_config(args, args.ankle))
     outputs = walk(core, args.speed, args.hs_angle, args.dt)
@@ -107,11 +103,13 @@ def _plan_steady(args: argparse.Namespace) -> int:
 def _plan_schedule(args: argparse.Namespace) -> int:
     from saddlewalk.core import Core, library
     from saddlewalk.planning import schedule
+    from saddlewalk.planning.steady import COLUMNS
 
     wishes = schedule.read_schedule(args.schedule)
     core = Core(load_config(args, args.ankle))
     walked = list(_until_the_end(args, wishes, core))
-    write_table(args.out, SCHEDULE_COLUMNS, (_schedule_row(core, instant) for instant in walked))
+    rows = (_schedule_row(core, instant) for instant in walked)
+    write_table(args.out, [*COLUMNS, *EVENT_COLUMNS], rows)
     infeasible = library().SADDLE_LIMIT_SPEED
     limited = {instant.wish for instant in walked if instant.output.limits & infeasible}
     for wish in sorted(limited, key=lambda wish: wish.line):
@@ -129,6 +127,7 @@ def _plan_schedule(args: argparse.Namespace) -> int:
 
 def _until_the_end(args: argparse.Namespace, wishes: list[Any], core: Any) -> Iterator[Any]:
     """The instants of the walk: for --duration, else until it stands or 5 s after the last row."""
+    from saddlewalk.contract import STANDING
     from saddlewalk.planning import schedule
 
     last = wishes[-1]
@@ -138,11 +137,7 @@ def _until_the_end(args: argparse.Namespace, wishes: list[Any], core: Any) -> It
         if not until_stand and instant.t_s > duration_s + 1e-9:
             return
         yield instant
-        if (
-            until_stand
-            and instant.wish is last
-            and schedule.mode_of(instant.output.plan) == "standing"
-        ):
+        if until_stand and instant.wish is last and instant.output.plan.mode == STANDING:
             return
 
 
@@ -160,8 +155,9 @@ def _note(text: str) -> None:
 
 
 def _schedule_row(core: Any, instant: Any) -> list[Cell]:
-    from saddlewalk.core import TIME_MAX_S, library
-    from saddlewalk.planning.schedule import mode_of
+    from saddlewalk.contract import MODES, TIME_MAX_S
+    from saddlewalk.core import library
+    from saddlewalk.planning.steady import COLUMNS, row_of
 
     plan = instant.output.plan
     scores = core.score_plan(plan)
@@ -172,7 +168,7 @@ def _schedule_row(core: Any, instant: Any) -> list[Cell]:
     times_s = (plan.time_to_heel_strike_s, plan.time_to_toe_off_s)
     return [
         *row,
-        mode_of(plan),
+        MODES[plan.mode],
         *(time_s if time_s < TIME_MAX_S else None for time_s in times_s),
         " ".join(event.name for event in instant.events),
         " ".join(f"{event.t_s:.6f}" for event in instant.events),

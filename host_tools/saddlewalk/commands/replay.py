@@ -1,24 +1,17 @@
 """`saddlewalk replay`: a recorded walk, sent through CAN to the firmware as a live wearer would."""
 
 import argparse
-import math
 import sys
 from typing import TYPE_CHECKING, Any
 
-from saddlewalk import verdict
 from saddlewalk.config import add_body_options
 from saddlewalk.options import add_markers
 from saddlewalk.outputs import add_input, add_output
 
 if TYPE_CHECKING:
-    import numpy as np
-
-    from saddlewalk.gait.events import Gait
     from saddlewalk.gait.recording import Recording
 
 SAMPLE_NAMES = ("healthy", "stroke")
-NUMBER_COLUMNS = "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m".split()
-SCORE_COLUMNS = [*NUMBER_COLUMNS, *verdict.COLUMNS, "faults"]
 
 
 def add_parser(subparsers: Any) -> None:
@@ -62,6 +55,7 @@ def run(args: argparse.Namespace) -> int:
         play_realtime,
         states_at_ticks,
     )
+    from saddlewalk.gait.replayed import SCORE_COLUMNS, report, score_row
     from saddlewalk.recorded_states import STATE_COLUMNS
     from saddlewalk.table import write_table
     from saddlewalk.transport.bus import open_bus, private_udp
@@ -104,52 +98,3 @@ def _load(args: argparse.Namespace) -> "Recording":
     from saddlewalk.gait.motion_capture import load_walk, read_markers
 
     return load_walk(args.recording, read_markers(args.markers))
-
-
-def score_row(time_s: float, scores: dict[str, float]) -> list:
-    """One line of --out, in the order of SCORE_COLUMNS."""
-    names = ("V_COMP", "S_PEND", "S_JUMP", "S_SW", "MOS_COM", "MOS_XCOM")
-    return [
-        round(time_s, 6),
-        *(scores[name] for name in names),
-        *verdict.cells(scores),
-        f"0x{scores['FAULTS']:04x}",
-    ]
-
-
-def report(recording: "Recording", gait: "Gait", rows: list[list]) -> list[str]:
-    """Lines `name value unit`: the walk from the markers, the rest from the firmware's scores."""
-    import numpy as np
-
-    numbers = np.array([row[: len(NUMBER_COLUMNS)] for row in rows])
-    columns = dict(zip(NUMBER_COLUMNS, numbers.T, strict=True))
-    scored = np.isfinite(columns["mos_com_m"])
-    levels = verdict.ticks_in(row[SCORE_COLUMNS.index("level")] for row in rows)
-    return [
-        f"source {recording.source}",
-        _line("duration", recording.duration_s, "s"),
-        _line("speed", gait.speed_m_s, "m/s"),
-        _line("step_length", gait.step_length_m, "m"),
-        _line("step_width", gait.step_width_m, "m"),
-        _line("min_s_sw", _least(columns["s_sw"])),
-        _line("com_in_bos", _share_positive(columns["mos_com_m"]), "%"),
-        _line("xcom_in_bos", _share_positive(columns["mos_xcom_m"]), "%"),
-        *(_line(name, 100.0 * ticks / len(rows), "%") for name, ticks in levels.items()),
-        f"ticks_scored {scored.sum()}",
-        f"ticks {len(rows)}",
-    ]
-
-
-def _line(name: str, value: float, unit: str = "") -> str:
-    text = "n/a" if math.isnan(value) else f"{value:.4g}"
-    return f"{name} {text} {unit}".rstrip()
-
-
-def _least(values: "np.ndarray") -> float:
-    return min((value for value in values if math.isfinite(value)), default=math.nan)
-
-
-def _share_positive(values: "np.ndarray") -> float:
-    """Percent of the values that are there; NaN if none is."""
-    there = values[values == values]
-    return 100.0 * float((there > 0).mean()) if len(there) else math.nan

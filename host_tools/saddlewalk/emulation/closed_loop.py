@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from saddlewalk import core
+from saddlewalk.contract import LEFT, RIGHT, TICK_S
 from saddlewalk.emulation import wearer as emulator
-from saddlewalk.emulation.wearer import LEFT, RIGHT, STEP_S, Plan, RecoveryStep, Wearer
+from saddlewalk.emulation.wearer import STEP_S, Plan, RecoveryStep, Wearer
 from saddlewalk.planning.schedule import Schedule
-from saddlewalk.ticks import TICK_S
 
 STEPS_A_TICK = round(TICK_S / STEP_S)
 

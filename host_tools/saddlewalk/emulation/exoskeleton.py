@@ -10,21 +10,13 @@ from typing import Any
 
 import can
 
+from saddlewalk.contract import LEFT, RIGHT, STAND, STANDING, TICK_S, WALK
 from saddlewalk.emulation.paced_ticks import WAKE_UP_S, PacedTicks
 from saddlewalk.emulation.punctuality import Punctuality
-from saddlewalk.emulation.wearer import (
-    LEFT,
-    RIGHT,
-    STANDING,
-    STEP_S,
-    Measurement,
-    Plan,
-    RecoveryStep,
-    Wearer,
-)
+from saddlewalk.emulation.wearer import STEP_S, Measurement, Plan, RecoveryStep, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.planning.schedule import Schedule
-from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages, TickReader, next_tick
+from saddlewalk.ticks import PLAN_MESSAGES, Messages, TickReader, next_tick
 from saddlewalk.transport.authentication import Authenticator
 from saddlewalk.transport.wire import Sender, identifier
 from saddlewalk.verdict import level_name
@@ -33,8 +25,6 @@ SILENCE_S = 3.0
 START_TICKS = 125  # that do not do as commanded, before a walk is given up: 10 s
 RESEND_S = 0.25
 COMMAND_S = 1.5 * TICK_S  # after the last command, when no tick comes that it would answer
-
-MODE_STAND, MODE_WALK = 0, 1
 
 
 @dataclass(frozen=True)
@@ -232,7 +222,7 @@ class Exoskeleton:
 
     def _is_unheeded(self, plan: Plan | None) -> bool:
         """The firmware does not stand before the walk, or stands though it is to walk."""
-        to_walk = self._command(self._wearer.time_s)[0] == MODE_WALK
+        to_walk = self._command(self._wearer.time_s)[0] == WALK
         return not self._begun or (to_walk and plan is not None and plan.mode == STANDING)
 
     def _advance(self, steps: int) -> None:
@@ -257,7 +247,7 @@ class Exoskeleton:
         """Mode, speed and heel-strike angle asked for at that time of the walk."""
         asked = self._schedule(time_s)
         walk = self._begun and asked.speed_m_s > 0
-        return MODE_WALK if walk else MODE_STAND, asked.speed_m_s, asked.heel_strike_rad
+        return WALK if walk else STAND, asked.speed_m_s, asked.heel_strike_rad
 
     def _send_command_frame(self, time_s: float) -> None:
         """Authenticated, there is none until the firmware has opened a session."""

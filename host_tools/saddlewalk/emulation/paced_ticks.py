@@ -5,8 +5,9 @@ from collections.abc import Callable
 
 import can
 
+from saddlewalk.contract import TICK_S
 from saddlewalk.errors import UserError
-from saddlewalk.ticks import TICK_S, Messages, next_tick
+from saddlewalk.ticks import Messages, next_tick
 
 WAKE_UP_S = 0.01  # measurements at 100 Hz
 WAKE_UPS_A_TICK = round(TICK_S / WAKE_UP_S)

@@ -17,12 +17,10 @@ from typing import Any
 
 import numpy as np
 
-GRAVITY_M_S2 = 9.80665
+from saddlewalk.contract import GRAVITY_M_S2, LEFT, RIGHT, STARTING
+
 STEP_S = 1e-3
 STANCE_M = 0.11  # from the middle to each foot of a wearer who stands and waits
-LEFT, RIGHT = 0, 1
-STANDING, STARTING, WALKING, STOPPING = range(4)  # saddle_mode_t
-MODES = ("standing", "starting", "walking", "stopping")
 SPEED_MIN_M_S = 0.01  # slower steps last as long as if so fast
 REST_SHARE = 1 - 2 / math.pi  # of the way to the middle, from the foot over which a walk ends
 NEARBY_M = 0.08 + 0.05j  # a recovery step so near to the planned one is not worth leaving that

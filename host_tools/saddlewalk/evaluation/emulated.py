@@ -4,8 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from saddlewalk.contract import WALKING
 from saddlewalk.emulation import closed_loop
-from saddlewalk.emulation.wearer import WALKING, Body, Measurement, Wearer
+from saddlewalk.emulation.wearer import Body, Measurement, Wearer
 from saddlewalk.evaluation.baselines import half_foot_m
 from saddlewalk.evaluation.scoring import Announced, Walk, announced, states_of
 from saddlewalk.recorded_states import score_row

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from saddlewalk.contract import LEVELS
 from saddlewalk.evaluation.recorded_falls import Scored
 from saddlewalk.evaluation.scoring import (
     MARGINS,
@@ -32,7 +33,7 @@ from saddlewalk.pictures.walk import (
     SKY,
     draw_level,
 )
-from saddlewalk.verdict import LEVELS, reason_name
+from saddlewalk.verdict import reason_name
 
 matplotlib.use("Agg")
 

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from saddlewalk.contract import TICK_S
 from saddlewalk.core import Command, ffi
 from saddlewalk.emulation.wearer import Noise
 from saddlewalk.errors import UserError
@@ -35,7 +36,6 @@ from saddlewalk.recorded_states import (
     scored_rows,
 )
 from saddlewalk.table import numbers_of, read_texts
-from saddlewalk.ticks import TICK_S
 
 ROWS_A_TICK = round(TICK_S / 0.02)
 COM_HEIGHT = 0.57  # of the body's height

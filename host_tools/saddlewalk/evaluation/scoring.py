@@ -12,13 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from saddlewalk.contract import GRAVITY_M_S2, LEVELS, REASONS, TICK_S, UNKNOWN, UNSTABLE
 from saddlewalk.evaluation.baselines import hof_margin_m, hull_margin_m
 from saddlewalk.recorded_states import SCORE_COLUMNS, STATE_COLUMNS
 from saddlewalk.table import Cell
-from saddlewalk.ticks import TICK_S
-from saddlewalk.verdict import LEVELS, REASONS, level_name, reason_name
+from saddlewalk.verdict import level_name, reason_name
 
-GRAVITY_M_S2 = 9.80665
 TIMELY_S = 3 * TICK_S
 ROUNDING_S = 1e-6  # of differences between times of a table
 EVIDENCE_S = 3.0  # after a push
@@ -26,7 +25,6 @@ EVIDENCE_S = 3.0  # after a push
 WINDOWS = {"roc_to_0.24_s_before": EVIDENCE_S, "roc_to_0.24_s_before_in_first_0.4_s": 0.4}
 SETTLED_S = {"calm": 2.0, "start_stop": 0.0}  # by kind of walk, before its levels count
 INPUTS = ("exact", "noise", "one_tick_late")
-UNKNOWN, UNSTABLE = LEVELS.index("unknown"), LEVELS.index("unstable")
 STUMBLE_S = 1.0  # about an alarm
 STUMBLE_M = 0.05  # that the XCoM leaves the feet by
 WIDE_STEP = 2.0  # of the usual width
@@ -198,7 +196,7 @@ def one_tick_late(said: Announced) -> Announced:
 
     return Announced(
         delayed(said.level, UNKNOWN),
-        delayed(said.reason, list(REASONS).index("input")),
+        delayed(said.reason, REASONS.index("input")),
         {name: delayed(values, math.nan) for name, values in said.margins.items()},
     )
 

@@ -15,15 +15,15 @@ from typing import Any
 
 import numpy as np
 
+from saddlewalk.contract import STANDING, TICK_S, WALKING
 from saddlewalk.core import ffi, library
 from saddlewalk.emulation import closed_loop
-from saddlewalk.emulation.wearer import STANDING, WALKING, Body, Noise, Push, Wearer
+from saddlewalk.emulation.wearer import Body, Noise, Push, Wearer
 from saddlewalk.evaluation import scoring
 from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_margin_m
 from saddlewalk.evaluation.emulated import Witness
 from saddlewalk.evaluation.scoring import Announced, Score, one_tick_late, score
 from saddlewalk.planning.schedule import schedule_of
-from saddlewalk.ticks import TICK_S
 
 KINDS = ("planned", "recovery")
 SPEEDS_M_S = (0.5, 1.6)

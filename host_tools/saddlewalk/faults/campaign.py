@@ -15,13 +15,14 @@ import can
 import numpy as np
 
 from saddlewalk import core
+from saddlewalk.contract import OUTPUT_FRAMES, STANDING, TICK_S
 from saddlewalk.emulation.closed_loop import STEPS_A_TICK
 from saddlewalk.emulation.exoskeleton import plan_of
-from saddlewalk.emulation.wearer import STANDING, Body, Wearer
+from saddlewalk.emulation.wearer import Body, Wearer
 from saddlewalk.faults.judge import STATES, Judge
 from saddlewalk.faults.scenario import MEASURED, Fault, Happening, Line, Scenario, draw
 from saddlewalk.firmware import config_of, ffi, library
-from saddlewalk.ticks import MESSAGES, TICK_S, Messages, TickReader
+from saddlewalk.ticks import Messages, TickReader
 from saddlewalk.transport import wire
 
 HEEL_STRIKE_RAD = 0.17
@@ -52,7 +53,7 @@ class Device:
         self._inbox = ffi().new("saddle_inbox_t *")
         self._output = ffi().new("saddle_output_t *")
         self._health = ffi().new("saddle_wire_health_t *")
-        self._frames = ffi().new("saddle_frame_t[]", len(MESSAGES))
+        self._frames = ffi().new("saddle_frame_t[]", OUTPUT_FRAMES)
         self._reader = TickReader()
         self._ticks = 0
         lib.saddle_init(self._context, config_of(config))

@@ -5,10 +5,10 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
-from saddlewalk.emulation.wearer import STANDING, STARTING, STOPPING, WALKING
+from saddlewalk.contract import STANDING, STARTING, STOPPING, TICK_S, WALKING
 from saddlewalk.faults.scenario import MEASURED, MESSAGES, Arrival
 from saddlewalk.firmware import library
-from saddlewalk.ticks import PLAN_MESSAGES, TICK_S, Messages
+from saddlewalk.ticks import PLAN_MESSAGES, Messages
 from saddlewalk.transport import wire
 
 KNEE_HEIGHT = 0.285  # of the body's height

@@ -8,10 +8,11 @@ from collections.abc import Iterable, Iterator
 import can
 import numpy as np
 
+from saddlewalk.contract import TICK_S
 from saddlewalk.errors import UserError
 from saddlewalk.gait.recording import Recording
 from saddlewalk.gait.states import State, nothing_at, state_at
-from saddlewalk.ticks import TICK_S, Messages, Signals, TickReader, next_tick, scores_of
+from saddlewalk.ticks import Messages, Signals, TickReader, next_tick, scores_of
 from saddlewalk.transport.wire import Sender
 
 ANSWER_TIMEOUT_S = 2.0

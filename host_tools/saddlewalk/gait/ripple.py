@@ -3,12 +3,12 @@
 import math
 
 from saddlewalk.config import configuration
+from saddlewalk.contract import TICK_S
 from saddlewalk.core import Command
 from saddlewalk.gait.events import analyse
 from saddlewalk.gait.recording import Recording
 from saddlewalk.gait.states import state_at
 from saddlewalk.recorded_states import measurement_of, recording_core
-from saddlewalk.ticks import TICK_S
 
 SHORTEST_S = 1.0  # of a recording that tells it: about two steps
 

@@ -13,8 +13,9 @@ import can
 import lcm
 
 from saddlewalk import verdict
+from saddlewalk.contract import MODES
 from saddlewalk.emulation.exoskeleton import Observer, Tick
-from saddlewalk.emulation.wearer import MODES, Wearer
+from saddlewalk.emulation.wearer import Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.logs.run_files import CAN_LOG, LCM_LOG, TABLE
 from saddlewalk.table import Cell, format_cell

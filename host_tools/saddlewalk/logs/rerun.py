@@ -13,10 +13,10 @@ from typing import Any
 
 from saddlewalk import __version__
 from saddlewalk.config import ANKLES
+from saddlewalk.contract import TICK_S
 from saddlewalk.errors import UserError
 from saddlewalk.firmware import Firmware, default_config, ffi, library
 from saddlewalk.logs.messages import decode
-from saddlewalk.ticks import TICK_S
 from saddlewalk.transport.lcm_log import Event
 
 GAPS_MAX = 20  # told one by one

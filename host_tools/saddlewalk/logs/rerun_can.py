@@ -9,14 +9,14 @@ from typing import Any
 
 import can
 
+from saddlewalk.contract import TICK_US
+from saddlewalk.core import AGE_NEVER_US
 from saddlewalk.errors import UserError
 from saddlewalk.firmware import Firmware, config_of, ffi, library
 from saddlewalk.logs.rerun import Difference, Report
-from saddlewalk.ticks import MESSAGES, TICK_S
+from saddlewalk.ticks import MESSAGES
 from saddlewalk.transport import wire
 
-TICK_US = round(TICK_S * 1e6)
-NEVER_US = 0xFFFFFFFF  # SADDLE_AGE_NEVER_US
 NO_IDENTIFIER = 0xFFFFFFFF  # what the host makes of a frame that is not a classic data frame
 _INPUTS = "COMMAND MEASURED_COM MEASURED_LEFT MEASURED_RIGHT".split()
 
@@ -114,7 +114,7 @@ class _Node:
         time_us = self.ticks * TICK_US
         never = self._command_us is None
         self._input.time_us = time_us
-        self._input.command_age_us = NEVER_US if never else time_us - self._command_us
+        self._input.command_age_us = AGE_NEVER_US if never else time_us - self._command_us
         self.firmware.tick(self._input)
         self.ticks += 1
         self.waiting += 1

@@ -4,8 +4,9 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+from saddlewalk.contract import MODES, STANDING
 from saddlewalk.emulation.exoskeleton import Exoskeleton
-from saddlewalk.emulation.wearer import MODES, STANDING, Wearer
+from saddlewalk.emulation.wearer import Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.logs.can_log import CanLog
 from saddlewalk.logs.recorder import CHANNELS, Recorder

@@ -20,6 +20,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from saddlewalk.atomic_write import whole_file, whole_folder
+from saddlewalk.contract import SIDES
 from saddlewalk.errors import UserError
 from saddlewalk.logs.messages import Kind, Others, kinds
 from saddlewalk.logs.run_files import table_names
@@ -27,7 +28,6 @@ from saddlewalk.paths import install_command
 from saddlewalk.transport.lcm_log import Event
 
 UNITS = tuple(f"_{unit}" for unit in "m_s n_s m rad s us n j kg".split())  # longest first
-SIDES = ("left", "right")
 AXES = ("x", "y", "z")
 BY_SIDE = {"foot_pitch_rad"}  # pairs that are not of x and y
 

@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
 from saddlewalk.atomic_write import whole_file
+from saddlewalk.contract import MODES
 from saddlewalk.pictures.walk import BLUE, FEET, FOOT_M, ORANGE, PINK, SKY
-from saddlewalk.planning.schedule import Instant, Wish, mode_of
+from saddlewalk.planning.schedule import Instant, Wish
 
 MODE_COLOURS = {"standing": "0.6", "starting": PINK, "walking": SKY, "stopping": ORANGE}
 SHADE = 0.16
@@ -90,7 +91,9 @@ def _spans(walked: Sequence[Instant], along: np.ndarray) -> Iterator[tuple[str, 
     """(mode, from, to) of each stretch of one mode."""
     stretches = [
         (mode, next(group)[0])
-        for mode, group in groupby(enumerate(walked), key=lambda pair: mode_of(pair[1].output.plan))
+        for mode, group in groupby(
+            enumerate(walked), key=lambda pair: MODES[pair[1].output.plan.mode]
+        )
     ]
     for (mode, start), (_, end) in pairwise([*stretches, ("", len(walked) - 1)]):
         yield mode, along[start], along[end]

@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Polygon
 
+from saddlewalk.contract import LEVELS, MODES, STANDING, STARTING, STOPPING
 from saddlewalk.core import bos_polygon
-from saddlewalk.emulation.wearer import MODES, STANDING, STARTING, STOPPING, Push
-from saddlewalk.verdict import LEVELS
+from saddlewalk.emulation.wearer import Push
 
 matplotlib.use("Agg")
 

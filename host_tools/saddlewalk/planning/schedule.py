@@ -10,14 +10,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from saddlewalk.core import Command, Core, Measurement, ffi
+from saddlewalk.contract import SIDES, STARTING, STOPPING, TICK_S
+from saddlewalk.core import Command, Core, Measurement
 from saddlewalk.errors import UserError
 from saddlewalk.table import read_series
 
-LONGEST_TICK_S = 0.08
 LONGEST_S = 1e6
 _SAME_TIME_S = 1e-9
-_SIDES = ("left", "right")
 
 Speeds = list[tuple[float, float]]  # (from this time on, s; speed, m/s, 0: stand), times from 0
 Schedule = Callable[[float], Command]  # what is asked for at a time of the walk, s
@@ -81,7 +80,7 @@ def read_schedule(source: str) -> list[Wish]:
 def walk(core: Core, wishes: list[Wish], heel_strike_rad: float, dt_s: float) -> Iterator[Instant]:
     """Endless, from standing, at t = k dt; ticks in between where dt is long."""
     starts_s = [wish.from_s for wish in wishes]
-    ticks_per_row = math.ceil(dt_s / LONGEST_TICK_S - _SAME_TIME_S)
+    ticks_per_row = math.ceil(dt_s / TICK_S - _SAME_TIME_S)
     tick_s = dt_s / ticks_per_row
     before, events, tick = None, [], 0
     while True:
@@ -101,15 +100,10 @@ def walk(core: Core, wishes: list[Wish], heel_strike_rad: float, dt_s: float) ->
         before, tick = output, tick + 1
 
 
-def mode_of(plan: Any) -> str:
-    """`standing`, `starting`, `walking` or `stopping`."""
-    return ffi().typeof("saddle_mode_t").elements[plan.mode].removeprefix("SADDLE_MODE_").lower()
-
-
 def _events(before: Any, after: Any) -> list[tuple[str, float]]:
     """Events between two plans a tick apart, with the time to them that the first foretells."""
     swung, swings = _swing_foot(before), _swing_foot(after)
-    stepped_on = (mode_of(before), mode_of(after)) == ("stopping", "starting")
+    stepped_on = (before.mode, after.mode) == (STOPPING, STARTING)
     changed = swings != swung or stepped_on
     events = []
     if swung and not _has_struck(before) and (changed or _has_struck(after)):
@@ -122,7 +116,7 @@ def _events(before: Any, after: Any) -> list[tuple[str, float]]:
 
 def _swing_foot(plan: Any) -> str | None:
     """None while both feet carry."""
-    return _SIDES[1 - plan.support] if plan.step_length_m > 0 else None
+    return SIDES[1 - plan.support] if plan.step_length_m > 0 else None
 
 
 def _has_struck(plan: Any) -> bool:

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from saddlewalk.contract import TICK_S
 from saddlewalk.core import Command, Measurement
-from saddlewalk.planning.schedule import LONGEST_TICK_S
 from saddlewalk.table import Cell
 
 COLUMNS = (
@@ -20,7 +20,7 @@ def walk(core: Any, speed_m_s: float, hs_angle_deg: float, dt_s: float) -> Itera
     command = Command(speed_m_s, math.radians(hs_angle_deg))
     nobody = Measurement()
     core.join(command)
-    ticks_per_row = math.ceil(dt_s / LONGEST_TICK_S)
+    ticks_per_row = math.ceil(dt_s / TICK_S)
     yield 0.0, core.tick(0, command, nobody)
     row = 0
     while True:

@@ -8,11 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from saddlewalk.contract import LEVELS
 from saddlewalk.pictures.walk import BLUE, FEET, GREEN, LANES, ORANGE
 from saddlewalk.session.quality import Trouble
 from saddlewalk.session.runs import Run, Span, Spans
 from saddlewalk.session.steps import QUANTITIES, Way
-from saddlewalk.verdict import LEVELS, level_name, reason_words
+from saddlewalk.verdict import level_name, reason_words
 
 SHADES = {LEVELS.index("caution"): 0.15, LEVELS.index("unstable"): 0.35}
 STYLES = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."))

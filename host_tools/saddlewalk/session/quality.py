@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from saddlewalk import process_words
-from saddlewalk.dashboard import FAULTS, LIMITS, STATUSES
+from saddlewalk.contract import FAULTS, LIMITS, STATUSES, TICK_S, name_of
 from saddlewalk.session.runs import Run, Spans
-from saddlewalk.ticks import TICK_S
 
 GAP_S = 1.5 * TICK_S
 AGES = {
@@ -105,7 +104,7 @@ def troubles(run: Run) -> list[Trouble]:
     ]
     statuses = run.bits("health", "status")
     for status in np.unique(statuses[statuses != 0]).tolist():
-        name = STATUSES[status] if 0 < status < len(STATUSES) else f"status {status}"
+        name = name_of(status, STATUSES, "status")
         found.append(_trouble(run, name, "the tick failed", statuses == status))
     return found
 

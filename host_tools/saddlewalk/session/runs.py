@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from saddlewalk.contract import TICK_S
 from saddlewalk.dashboard import SILENT_AFTER_S
 from saddlewalk.errors import UserError
 from saddlewalk.logs.messages import Kind, Others, kinds
-from saddlewalk.ticks import TICK_S
 from saddlewalk.transport.lcm_log import LcmLog
 from saddlewalk.verdict import reason_words
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from saddlewalk.dashboard import FAULTS, MODES, SILENT_AFTER_S
+from saddlewalk.contract import FAULTS, SIDES, WALKING
+from saddlewalk.dashboard import SILENT_AFTER_S
 from saddlewalk.gait.measures import LONGEST_STEP_S
 from saddlewalk.session.runs import Run
 
-SIDES = ("left", "right")
 SWING_MIN_S = 0.12  # as the firmware has it: contact that is lost for less ends no stance
 ROUNDING_S = 1e-6  # of sums over a day
 STEADY_M_S = 0.01  # by which the planned speed varies in a steady step
@@ -183,7 +183,7 @@ def _way(run: Run, measured: bool, landings: _Landings, moved_m: np.ndarray) -> 
 
 def _steady(run: Run, first: np.ndarray, end: np.ndarray) -> np.ndarray:
     """Whether the plan walks at one speed in the ticks from each `first` to before `end`."""
-    walking = run.column("plan", "mode") == MODES.index("walking")
+    walking = run.column("plan", "mode") == WALKING
     walks = walking & (run.column("plan", "valid") == 1)
     speed_m_s = run.column("plan", "speed_m_s")
     varies_m_s = _over(np.maximum, speed_m_s, first, end) - _over(np.minimum, speed_m_s, first, end)

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-GRAVITY_M_S2 = 9.80665
+from saddlewalk.contract import GRAVITY_M_S2
+
 ANKLE_TIME_CONSTANT_S = 0.11
 CLEARANCE_M = 0.05
 

@@ -11,9 +11,9 @@ from functools import cached_property
 import numpy as np
 
 from saddlewalk.benchmark.neighbours import MissingError
+from saddlewalk.contract import GRAVITY_M_S2
 
 SOLVERS = ("quadprog", "daqp", "osqp")
-GRAVITY_M_S2 = 9.80665
 INSTALL = "not installed: make neighbours"
 
 # What the programmes weigh against (CoP from the middle of the foot)^2, m^2.
