@@ -284,14 +284,14 @@ static void test_push_teaches_no_tolerance(void)
     TEST_ASSERT_TRUE(output.walk.ripple < 1.25f * ripple);
 }
 
-/* Whoever always comes near the band is not warned of each step: caution begins at 0.8 of the usual
- * lowest margin. */
+/* Caution begins at half of what the steady steps keep: whoever always comes near 0 is not warned of
+ * each step, and whoever never does is warned early. */
 static void test_caution_band_is_the_walker_s_own(void)
 {
     saddle_learning_t learning;
     saddle_learning_init(&learning, model_of(&config));
-    const float usual[] = {0.0f, 0.4f, 0.125f, 0.1f, 0.05f, 0.01f};
-    const double band[] = {0.1, 0.1, 0.1, 0.08, 0.04, 0.025};
+    const float usual[] = {0.0f, 0.8f, 0.5f, 0.2f, 0.1f, 0.05f, 0.01f};
+    const double band[] = {0.1, 0.25, 0.25, 0.1, 0.05, 0.025, 0.025};
     for (size_t i = 0; i < COUNT_OF(usual); i++) {
         learning.walk.step_margin = usual[i];
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, band[i],

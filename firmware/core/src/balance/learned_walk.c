@@ -107,14 +107,19 @@ static void learn_step(saddle_learning_t *learning, const saddle_step_tracker_t 
 }
 
 void saddle_learning_update(saddle_learning_t *learning, const saddle_model_t *model,
-                            const saddle_step_tracker_t *steps, float margin, float dt_s)
+                            float own_margin, float dt_s)
 {
     const float departure_m_s = learning->velocity_m_s.x - learning->walk.velocity_m_s.x;
     learn_mean(learning, model, dt_s);
-    if (margin > model->config.learn_margin &&
+    if (own_margin > model->config.learn_margin &&
         saddle_magnitude(learning->walk.velocity_m_s.x) > WALKING_SPEED_M_S) {
         learn_ripple(learning, model, departure_m_s, dt_s);
     }
+}
+
+void saddle_learning_step(saddle_learning_t *learning, const saddle_step_tracker_t *steps,
+                          float margin)
+{
     if (margin < learning->lowest_margin) {
         learning->lowest_margin = margin;
     }

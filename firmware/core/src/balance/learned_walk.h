@@ -14,9 +14,13 @@ void saddle_learning_gap(saddle_learning_t *learning);
 void saddle_learning_watch(saddle_learning_t *learning, const saddle_measurement_t *measurement,
                            float dt_s);
 
-/** Learn from a CoM that was watched. margin: of this tick, before the plan has a say. The mean
- *  follows whatever happens; ripple and steps only above learn_margin. */
+/** Learn mean and ripple from a CoM that was watched. own_margin: of this tick, before the plan has a
+ *  say. The mean follows whatever happens, the ripple only above learn_margin. */
 void saddle_learning_update(saddle_learning_t *learning, const saddle_model_t *model,
-                            const saddle_step_tracker_t *steps, float margin, float dt_s);
+                            float own_margin, float dt_s);
+
+/** Learn the last step at a heel strike, unless a tick of it was unstable. margin: of this tick. */
+void saddle_learning_step(saddle_learning_t *learning, const saddle_step_tracker_t *steps,
+                          float margin);
 
 #endif

@@ -9,9 +9,11 @@
 #define PLAN_MARGIN_MIN (-0.5f)
 #define PLAN_MARGIN_MAX 0.2f
 
-/* Share of the usual lowest margin at which a caution begins, and of caution_margin at least. */
-#define OWN_CAUTION_SHARE 0.8f
-#define LEAST_CAUTION_SHARE 0.25f
+/* A caution begins at this share of the usual lowest margin of a step, within these shares of
+ * caution_margin. */
+#define OWN_CAUTION_SHARE 0.5f
+#define LEAST_CAUTION 0.25f
+#define MOST_CAUTION 2.5f
 
 /* [E33] */
 saddle_departure_t saddle_departure(const saddle_model_t *model, const saddle_learning_t *learning,
@@ -85,6 +87,7 @@ float saddle_caution_below(const saddle_model_t *model, const saddle_learning_t 
 {
     const float usual = learning->walk.step_margin;
     const float band = model->config.caution_margin;
-    return usual > 0.0f ? saddle_clamp(OWN_CAUTION_SHARE * usual, LEAST_CAUTION_SHARE * band, band)
+    return usual > 0.0f ? saddle_clamp(OWN_CAUTION_SHARE * usual, LEAST_CAUTION * band,
+                                       MOST_CAUTION * band)
                         : band;
 }

@@ -30,8 +30,8 @@ float saddle_plan_margin(const saddle_model_t *model, const saddle_learning_t *l
 /** The largest part of a departure. plan: what saddle_plan_margin() said, 0 for nobody led. */
 saddle_reason_t saddle_driver(const saddle_departure_t *departure, float plan);
 
-/** Below this margin is caution: caution_margin, or less for a walker whose steady steps come near
- *  it, [E31]. */
+/** At and below this margin is caution: a share of what the wearer's steady steps keep, [E31];
+ *  caution_margin before a step is known. */
 float saddle_caution_below(const saddle_model_t *model, const saddle_learning_t *learning);
 
 #endif

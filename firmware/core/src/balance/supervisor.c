@@ -93,7 +93,8 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
         saddle_learning_t *learning = &supervisor->learning;
         saddle_learning_watch(learning, measurement, dt_s);
         const float own = measure_margin(model, learning, measurement, on_plan, verdict);
-        saddle_learning_update(learning, model, steps, own, dt_s);
+        saddle_learning_update(learning, model, own, dt_s);
+        saddle_learning_step(learning, steps, verdict->margin);
         steps->disturbed = own <= model->config.learn_margin;
     } else {
         saddle_learning_gap(&supervisor->learning);
