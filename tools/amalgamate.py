@@ -20,7 +20,9 @@ FUNCTION = re.compile(
     r"^(?!static |typedef |return |else )(?=[a-z])(?:const )?[\w ]+[ *](saddle_\w+)\(",
     re.MULTILINE,
 )
-STATIC = re.compile(r"^static (?:inline |const )*\w+[ *]+(\w+)[(\[ =]", re.MULTILINE)
+STATIC = re.compile(
+    r"^static (?:inline |const |SADDLE_NOINLINE )*\w+[ *]+(\w+)[(\[ =]", re.MULTILINE
+)
 MACRO = re.compile(r"^#define (\w+)", re.MULTILINE)
 
 

@@ -79,6 +79,22 @@ def walk(tmp_path_factory) -> str:
     return printed
 
 
+def test_core_of_one_file_exports_its_interface_alone():
+    listing = run(
+        cached("CMAKE_NM"), "-g", "--defined-only", paths.built("lib/libsaddlewalk_core.a")
+    )
+    exported = {line.split()[2] for line in listing.stdout.splitlines() if " T " in line}
+    assert exported == runpy.run_path(str(CHECKOUT / "tools/amalgamate.py"))["interface"]()
+
+
+def test_two_modules_with_one_name_are_refused_in_one_file(tmp_path):
+    amalgamate = runpy.run_path(str(CHECKOUT / "tools/amalgamate.py"))
+    paths = [tmp_path / "a.c", tmp_path / "b.c"]
+    for path in paths:
+        path.write_text("static float sum(float a)\n{\n    return a;\n}\n")
+    assert amalgamate["same_names"](paths) == ["sum is in a.c and in b.c"]
+
+
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory) -> Path:
     prefix = tmp_path_factory.mktemp("installed")

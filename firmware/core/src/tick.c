@@ -133,7 +133,7 @@ static saddle_intent_t intent_of(const saddle_plan_t *plan)
 }
 
 /* The plan under the command, or under a stand where the inputs are lost. */
-static void plan_walk(saddle_context_t *context, const saddle_feet_t *feet, bool stop,
+static SADDLE_NOINLINE void plan_walk(saddle_context_t *context, const saddle_feet_t *feet, bool stop,
                       uint32_t dt_us, saddle_output_t *output)
 {
     static const saddle_command_t stand = {(uint8_t)SADDLE_COMMAND_STAND, 0.0f, 0.0f};
@@ -144,7 +144,7 @@ static void plan_walk(saddle_context_t *context, const saddle_feet_t *feet, bool
 }
 
 /* The measured posture against the plan. */
-static void supervise(saddle_context_t *context, const saddle_sensed_t *sensed,
+static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_sensed_t *sensed,
                       saddle_output_t *output)
 {
     const saddle_intent_t intent = intent_of(&output->plan);

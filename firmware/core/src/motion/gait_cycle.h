@@ -48,7 +48,7 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model
 
 /** Take over a landing: the step that the stance foot really made. False, and nothing changes, if
  *  it is too late in the step or the foot lies where no plan can go on from. */
-bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m);
+bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m) SADDLE_NOINLINE;
 
 /** Whether the running quarter leads to a saddle via point, where the swing foot lands. */
 bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);

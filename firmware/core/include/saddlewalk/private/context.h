@@ -5,6 +5,13 @@
 
 #include <saddlewalk/types.h>
 
+/** Keeps a function's variables out of its caller's stack frame, where a compiler would inline it. */
+#if defined(__GNUC__)
+#define SADDLE_NOINLINE __attribute__((noinline))
+#else
+#define SADDLE_NOINLINE
+#endif
+
 /* ---- model: the configuration and what follows from it -------------------------------------- */
 
 /** Fixed point: a speed in 2^-42 m/s or a position in 2^-42 um. */
