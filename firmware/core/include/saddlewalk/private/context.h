@@ -144,7 +144,7 @@ typedef struct {
     saddle_frozen_timer_t com_timer, foot_timer[2];
     saddle_vec2_t anchor_m[2]; /**< where a foot on the ground should stay: CoP + moved_m of the CoM,
                                     since it landed or the CoM is still */
-    bool stood[2];             /**< the foot was on the ground at the last judgement */
+    bool stood[2];             /**< the foot was on the ground at the last check */
     float planned_distance_m;       /**< since the CoM is still */
     bool com_contradicted;     /**< a foot has left its place, or the plan has */
     float flight_s;      /**< since both feet are in the air */
