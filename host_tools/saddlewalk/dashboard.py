@@ -1,13 +1,15 @@
 """What the firmware says about one walk, for people: `render` for a terminal, `summary` as a line.
 
-Both take LCM messages (plan_t, scores_t, verdict_t, health_t, status_t, or None while one has not
-come), how long the firmware has been silent, and whether the wearer is known to have fallen. They
-draw what the messages hold and judge nothing, except that silence makes the level unknown, and that
+Both lead with the level and the margin that decides it. They draw what the messages hold and judge
+nothing, except that silence makes the level unknown, and that
 no score says anything after a fall. Colour repeats a word or the sign of a number and is never the
 only sign of anything.
 """
 
+import itertools
 import math
+from dataclasses import dataclass, replace
+from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.panel import Panel
@@ -23,6 +25,7 @@ from saddlewalk.contract import (
     SIDES,
     STATUSES,
     TIME_MAX_S,
+    UNKNOWN,
     bit_names,
     name_of,
 )
@@ -45,63 +48,103 @@ FELL = "fell"  # in the place of a level
 LEVEL_STYLES = dict(zip(LEVELS, ("magenta", "green", "yellow", "red"), strict=True))
 LEVEL_STYLES[FELL] = "red"
 MARGIN_SCALE_M = 0.4
-BAR_CELLS = 25
+BAR_CELLS = 13
+BALANCE_CELLS = 25
+UNSTABLE_CELLS = 4  # of them, below 0
+BALANCE_PER_CELL = 0.04
 NOT_AVAILABLE = "n/a"
 
 
-def render(
-    plan, scores, verdict, health, status, silent_s: float = 0.0, fallen: bool = False
-) -> RenderableType:
-    """A panel: the level, large, and what decided it; gait, scores, margins, energy and health."""
-    if all(message is None for message in (plan, scores, verdict, health, status)):
-        return Panel(Text(waiting(silent_s)), title="saddlewalk", border_style="yellow")
-    level, words = announced(verdict, silent_s, fallen)
+@dataclass(frozen=True)
+class Heard:
+    """The newest LCM message of each channel, None before the first, and what else is known."""
+
+    plan: Any = None
+    scores: Any = None
+    verdict: Any = None
+    balance: Any = None
+    health: Any = None
+    status: Any = None
+    silent_s: float = 0.0  # for how long nothing came
+    fallen: bool = False  # the wearer lies on the ground
+
+    @property
+    def nothing(self) -> bool:
+        messages = (self.plan, self.scores, self.verdict, self.balance, self.health, self.status)
+        return all(message is None for message in messages)
+
+    def still_true(self) -> "Heard":
+        """Without the scores of a posture after a fall, and without a margin that is old."""
+        if self.fallen:
+            return replace(self, scores=None, verdict=None, balance=None)
+        return replace(self, balance=None) if self.silent_s > SILENT_AFTER_S else self
+
+
+def render(heard: Heard) -> RenderableType:
+    """A panel: the level, large, what decided it, and the margin; then all else. 24 lines of 80."""
+    if heard.nothing:
+        return Panel(Text(waiting(heard.silent_s)), title="saddlewalk", border_style="yellow")
+    level, words = announced(heard)
     style = LEVEL_STYLES.get(level, "")
-    scores, verdict = (None, None) if fallen else (scores, verdict)
+    told = heard.still_true()
     parts = [
         Text(large(level.upper()), style=f"bold {style}"),
         Text(f"level: {level}{words and f', {words}'}", style="bold"),
-        Text(gait(plan)),
-        _bars(scores, verdict),
-        Text(f"energy: {energy(verdict)}"),
-        Text(f"recovery step: {recovery_step(verdict)}"),
-        Text(condition(health)),
-        *(Text(line) for line in process_words.lines(status)),
+        _margin_row(told.balance),
+        Text(f"driven by: {driver(told.balance)}"),
+        _bars(told),
+        Text(f"recovery: {recovery_step(told.verdict)}"),
+        Text(f"energy: {energy(told.verdict)}"),
+        Text(gait(told.plan)),
+        Text(condition(told.health)),
+        *(Text(line) for line in process_words.lines(told.status)),
     ]
     return Panel(Group(*parts), title="saddlewalk", border_style=style)
 
 
-def summary(
-    plan, scores, verdict, health, status, silent_s: float = 0.0, fallen: bool = False
-) -> str:
+def summary(heard: Heard) -> str:
     """The same on one line of plain text."""
-    nothing = all(message is None for message in (plan, scores, verdict, health, status))
-    if silent_s > SILENT_AFTER_S or nothing:
-        return waiting(silent_s)
-    level, words = announced(verdict, silent_s, fallen)
-    scores, verdict = (None, None) if fallen else (scores, verdict)
+    if heard.silent_s > SILENT_AFTER_S or heard.nothing:
+        return waiting(heard.silent_s)
+    level, words = announced(heard)
+    told = heard.still_true()
     return " | ".join(
         (
             f"{level.upper()}{words and f': {words}'}",
-            gait(plan),
-            "  ".join(f"{label} {_number(*of)}" for label, *of in _numbers(scores, verdict)),
-            f"energy: {energy(verdict)}",
-            f"recovery step: {recovery_step(verdict)}",
-            condition(health),
-            *process_words.lines(status),
+            f"margin {margin(told.balance)}, driven by: {driver(told.balance)}",
+            "  ".join(f"{label} {_number(*of)}" for label, *of in _numbers(told)),
+            f"recovery: {recovery_step(told.verdict)}",
+            f"energy: {energy(told.verdict)}",
+            gait(told.plan),
+            condition(told.health),
+            *process_words.lines(told.status),
         )
     )
 
 
-def announced(verdict, silent_s: float, fallen: bool) -> tuple[str, str]:
+def announced(heard: Heard) -> tuple[str, str]:
     """The level and what decided it, in words. What is old is not known any more."""
-    if fallen:
+    if heard.fallen:
         return FELL, "the wearer lies on the ground, scores are not available"
-    if silent_s > SILENT_AFTER_S:
-        return LEVELS[0], waiting(silent_s)
-    if verdict is None:
-        return LEVELS[0], "no verdict yet"
-    return level_name(verdict.level), reason_words(verdict.reason)
+    if heard.silent_s > SILENT_AFTER_S:
+        return LEVELS[UNKNOWN], waiting(heard.silent_s)
+    if heard.verdict is None:
+        return LEVELS[UNKNOWN], "no verdict yet"
+    return level_name(heard.verdict.level), reason_words(heard.verdict.reason)
+
+
+def margin(balance) -> str:
+    """The margin that decides the level, and its limits."""
+    if balance is None or math.isnan(balance.margin):
+        return NOT_AVAILABLE
+    return f"{balance.margin:+.3f} (unstable at 0, caution at {balance.caution_below:.3f})"
+
+
+def driver(balance) -> str:
+    """The largest part of the departure from the wearer's own walk, in words."""
+    if balance is None or math.isnan(balance.margin):
+        return NOT_AVAILABLE
+    return reason_words(balance.driver)
 
 
 def waiting(silent_s: float) -> str:
@@ -120,8 +163,8 @@ def gait(plan) -> str:
     support = SIDES[plan.support == plan.RIGHT]
     turn = plan.theta_rad / (2 * math.pi)
     return (
-        f"plan: {mode}, step {plan.step_count}, phase {plan.phase} ({turn:4.0%} of the stride), "
-        f"support {support}, {plan.speed_m_s:.2f} m/s, {_heel_strike(plan)}"
+        f"plan: {mode} {plan.speed_m_s:.2f} m/s, step {plan.step_count} ({support}), "
+        f"phase {turn:.0%}, {_heel_strike(plan)}"
     )
 
 
@@ -141,7 +184,7 @@ def energy(verdict) -> str:
     return ", ".join(
         f"{what} {NOT_AVAILABLE}"
         if math.isnan(excess_j)
-        else f"{what} {excess_j:+.1f} J ({'within' if absorbed else 'beyond'} the ankles' work)"
+        else f"{what} {excess_j:+.1f} J (ankles {'can' if absorbed else 'cannot'})"
         for excess_j, what, absorbed in parts
     )
 
@@ -155,9 +198,9 @@ def recovery_step(verdict) -> str:
     foot = verdict.recovery_foot == verdict.RIGHT
     x_m, y_m = verdict.recovery_landing_m
     return (
-        f"{SIDES[foot]} foot {abs(x_m):.2f} m {'behind' if x_m < 0 else 'ahead'} and "
-        f"{abs(y_m):.2f} m to the {'right' if y_m < 0 else 'left'} of the {SIDES[not foot]} one, "
-        f"{verdict.recovery_margin_m:.2f} m of reach left"
+        f"{SIDES[foot]} foot {abs(x_m):.2f} m {'behind' if x_m < 0 else 'ahead'}, "
+        f"{abs(y_m):.2f} m {'right' if y_m < 0 else 'left'} of the {SIDES[not foot]}, "
+        f"{verdict.recovery_margin_m:.2f} m spare"
         + (", ends the walk" if verdict.recovery_stops else "")
     )
 
@@ -198,27 +241,58 @@ def safe_stop(health) -> str:
     return f"; SAFE STOP, the walk ends: {why}"
 
 
-def _numbers(scores, verdict) -> list[tuple[str, object, str]]:
-    """(label, message, field) of what is shown as a bar."""
-    named = [(scores, SCORES), (scores, MARGINS), (verdict, EXPECTED)]
+def _numbers(told: Heard) -> list[tuple[str, object, str]]:
+    """(label, message, field) of what is shown as a bar beside or below the margin."""
+    named = [(told.scores, SCORES), (told.scores, MARGINS), (told.verdict, EXPECTED)]
     return [(label, message, name) for message, names in named for label, name in names]
 
 
-def _bars(scores, verdict) -> Table:
+def _margin_row(balance) -> Table:
+    row = Table.grid(padding=(0, 1))
+    known = balance is not None and not math.isnan(balance.margin)
+    bar = balance_bar(balance.margin, balance.caution_below) if known else _no_bar(BALANCE_CELLS)
+    row.add_row("margin", bar, Text(margin(balance), style="bold"))
+    return row
+
+
+def _bars(told: Heard) -> Table:
+    """Scores in the left column, margins in the right one."""
     table = Table.grid(padding=(0, 1))
-    table.add_column(min_width=13)
-    table.add_column()
-    table.add_column(justify="right", min_width=8)
-    for label, message, name in _numbers(scores, verdict):
-        bar = margin_bar if name.endswith("_m") else score_bar
-        table.add_row(label, bar(_value(message, name)), _number(message, name))
+    for width in (6, BAR_CELLS, 8, 13, BAR_CELLS, 8):
+        table.add_column(min_width=width, justify="right" if width == 8 else "left")
+    cells = [
+        (label, (margin_bar if name.endswith("_m") else score_bar)(_value(message, name)),
+         _number(message, name))
+        for label, message, name in _numbers(told)
+    ]  # fmt: skip
+    scores, margins = cells[: len(SCORES)], cells[len(SCORES) :]
+    for left, right in itertools.zip_longest(scores, margins, fillvalue=("", "", "")):
+        table.add_row(*left, *right)
     return table
+
+
+def balance_bar(value: float, caution_below: float) -> Text:
+    """The margin from 0, which is marked, to the right; below 0 to the left. The caution band is
+    hatched where the margin does not fill it."""
+    cells = round(value / BALANCE_PER_CELL)
+    below = min(max(-cells, 0), UNSTABLE_CELLS)
+    band = math.ceil(max(caution_below, 0.0) / BALANCE_PER_CELL)
+    above = min(max(cells, 0), BALANCE_CELLS - UNSTABLE_CELLS - 1)
+    style = "red" if value <= 0 else "yellow" if value <= caution_below else "green"
+    bar = Text("░" * (UNSTABLE_CELLS - below), style="dim").append("█" * below, style="red")
+    bar.append("│").append("█" * above, style=style)
+    bar.append("▒" * max(band - above, 0), style="yellow")
+    return bar.append("░" * (BALANCE_CELLS - len(bar)), style="dim")
+
+
+def _no_bar(cells: int) -> Text:
+    return Text("·" * cells, style="dim")
 
 
 def score_bar(value: float) -> Text:
     """A score: empty at 0 (the limit of stability) and below, full at 1 (the reference)."""
     if math.isnan(value):
-        return Text("·" * BAR_CELLS, style="dim")
+        return _no_bar(BAR_CELLS)
     cells = round(min(max(value, 0.0), 1.0) * BAR_CELLS)
     return Text("█" * cells, style="green").append("░" * (BAR_CELLS - cells), style="dim")
 
@@ -226,7 +300,7 @@ def score_bar(value: float) -> Text:
 def margin_bar(value_m: float) -> Text:
     """A signed margin from the middle: to the right inside the base of support, left outside."""
     if math.isnan(value_m):
-        return Text("·" * BAR_CELLS, style="dim")
+        return _no_bar(BAR_CELLS)
     half = BAR_CELLS // 2
     cells = round(min(abs(value_m) / MARGIN_SCALE_M, 1.0) * half)
     filled, empty = "█" * cells, "░" * (half - cells)

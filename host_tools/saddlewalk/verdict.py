@@ -28,7 +28,8 @@ REASON_WORDS = {
 }
 
 COLUMNS = (
-    "ebos_com_m ebos_xcom_m excess_stop_j excess_track_j can_stop on_track level reason".split()
+    "ebos_com_m ebos_xcom_m excess_stop_j excess_track_j can_stop on_track level reason "
+    "margin caution_below driver".split()
 )
 
 
@@ -54,7 +55,16 @@ def cells(signals: Mapping[str, float]) -> list[Cell]:
         known_bit(signals["ON_TRACK"], signals["EXCESS_TRACK"]),
         level_name(int(signals["LEVEL"])),
         reason_name(int(signals["REASON"])),
+        signals["BALANCE_MARGIN"],
+        signals["CAUTION_BELOW"],
+        _driver(signals),
     ]
+
+
+def _driver(signals: Mapping[str, float]) -> str | None:
+    """As a reason, while there is a margin that it drives."""
+    known = not math.isnan(signals["BALANCE_MARGIN"])
+    return reason_name(int(signals["DRIVER"])) if known else None
 
 
 def known_bit(bit: float, number: float) -> int | None:

@@ -20,10 +20,13 @@ import pytest
 
 from saddlewalk.cli import main
 from saddlewalk.config import load_config
-from saddlewalk.contract import TICK_S
+from saddlewalk.contract import REASONS, TICK_S
 from saddlewalk.emulation.wearer import Push
+from saddlewalk.logs.messages import decode
 from saddlewalk.logs.recorder import CHANNELS, COLUMNS
 from saddlewalk.transport.bus import open_bus, private_udp
+from saddlewalk.transport.lcm_log import LcmLog
+from saddlewalk.verdict import REASON_WORDS
 
 FILES = {"walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"}
 
@@ -140,12 +143,20 @@ def test_the_picture_marks_the_fall_and_keeps_the_com_in_view(tmp_path, ports):
     walk = read_walk(tmp_path / "walk.csv")
     fell_s = walk["t_s"][walk["fallen"] > 0][0]
     shown = until_fall(walk, fell_s)
-    for name in ("s_pend", "mos_xcom_m", "ebos_xcom_m", "level", "true_com_z_m"):
+    for name in ("s_pend", "mos_xcom_m", "ebos_xcom_m", "level", "margin", "true_com_z_m"):
         assert np.isfinite(walk[name][walk["t_s"] > fell_s]).any(), name
         assert np.isnan(shown[name][walk["t_s"] > fell_s]).all(), name
     config = load_config(argparse.Namespace(height=None, mass=None, config=None))
     figure = figure_of(walk, [Push(80, 3, 90)], config, fell_s)
-    whole, above, *over_time = figure.axes
+    balance, level, whole, above, *over_time = figure.axes
+    over_time += [balance, level]
+    lowest = int(np.nanargmin(shown["margin"]))
+    margin, words = walk["margin"][lowest], REASON_WORDS[walk["driver"][lowest]]
+    title = balance.get_title(loc="left")
+    assert title == f"Lowest margin {margin:.2f} at {walk['t_s'][lowest]:.2f} s: {words}"
+    assert margin < 0 and walk["t_s"][lowest] <= fell_s
+    low, high = balance.get_ylim()
+    assert low < 0 < walk["caution_below"][0] < high
     for axes in (whole, above):
         (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
         x_m, y_m = walk["true_com_x_m"][-1], walk["true_com_y_m"][-1]
@@ -154,6 +165,22 @@ def test_the_picture_marks_the_fall_and_keeps_the_com_in_view(tmp_path, ports):
     for axes in over_time:
         marks = [line.get_xdata() for line in axes.lines if line.get_label() == "fell"]
         assert [list(mark) for mark in marks] == [[fell_s, fell_s]]
+
+
+def test_the_table_has_the_margin_as_lcm_has_it(walk):
+    balances = [
+        decode(event)
+        for event in LcmLog(walk / "walk.lcmlog")
+        if event.channel == "SADDLEWALK_BALANCE"
+    ]
+    for row, message in zip(rows(walk), balances, strict=True):
+        half_step = 1.01 * 0.5e-4  # of the CAN signals
+        assert float(row["margin"]) == pytest.approx(message.margin, abs=half_step)
+        assert float(row["caution_below"]) == pytest.approx(message.caution_below, abs=half_step)
+        told = float(row["recovery_margin_m"] or "nan")
+        assert told == pytest.approx(message.recovery_margin_m, abs=half_step, nan_ok=True)
+        assert row["driver"] == REASONS[message.driver]
+    assert len({row["driver"] for row in rows(walk)}) > 2
 
 
 def test_demo_in_real_time(tmp_path, ports):

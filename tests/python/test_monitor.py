@@ -16,8 +16,16 @@ from rich.console import Console
 
 from saddlewalk import contract, dashboard, process_words
 from saddlewalk.commands.monitor import CHANNELS, Listener
+from saddlewalk.dashboard import Heard
 from saddlewalk.letters import large
-from saddlewalk.transport.lcm_types import health_t, plan_t, scores_t, status_t, verdict_t
+from saddlewalk.transport.lcm_types import (
+    balance_t,
+    health_t,
+    plan_t,
+    scores_t,
+    status_t,
+    verdict_t,
+)
 
 MONITOR = [
     sys.executable,
@@ -57,6 +65,14 @@ def verdict() -> verdict_t:
     return message
 
 
+def balance() -> balance_t:
+    message = balance_t()
+    message.driver = verdict_t.REASON_LEFT
+    message.margin, message.caution_below = 0.053, 0.1
+    message.recovery_margin_m = 0.214
+    return message
+
+
 def health() -> health_t:
     message = health_t()
     message.tick, message.measurement_age_us, message.late_ticks = 512, 4200, 3
@@ -78,24 +94,34 @@ def status() -> status_t:
     return message
 
 
-def view(**changed) -> list:
-    """All messages, in the order in which they are shown."""
-    made = {"plan": plan, "scores": scores, "verdict": verdict, "health": health, "status": status}
-    return [changed[name] if name in changed else make() for name, make in made.items()]
+def heard(**changed) -> Heard:
+    """All messages, or those given."""
+    made = {
+        "plan": plan,
+        "scores": scores,
+        "verdict": verdict,
+        "balance": balance,
+        "health": health,
+        "status": status,
+    }
+    messages = {name: make() for name, make in made.items()}
+    return Heard(**messages | changed)
 
 
-def drawn(*view, **kwargs) -> str:
-    console = Console(file=io.StringIO(), width=120)
-    console.print(dashboard.render(*view, **kwargs))
+def drawn(told: Heard, width: int = 120) -> str:
+    console = Console(file=io.StringIO(), width=width)
+    console.print(dashboard.render(told))
     return console.file.getvalue()
 
 
-SHOWN = ["phase 2", "60% of the stride", "right", "1.20 m/s", "0.31 s", "0.62", "1.25", "n/a"]
+SHOWN = ["step 17 (right)", "phase 60%", "1.20 m/s", "0.31 s", "0.62", "1.25", "n/a"]
+SHOWN += ["+0.053 (unstable at 0, caution at 0.100)"]
+SHOWN += ["driven by: the body departs to the left of the feet"]
 SHOWN += ["+0.083 m", "-0.214 m", "data age 4 ms", "late ticks 3", "frames rejected 7"]
 SHOWN += ["plan: walking", "tick 512", "+0.097 m", "-0.031 m"]
 SHOWN += ["sideways motion departs from the expected"]
-SHOWN += ["to stop +31.2 J (beyond the ankles' work)", "to the plan -4.5 J (within"]
-SHOWN += ["right foot 0.70 m ahead and 0.15 m to the right of the left one, 0.21 m of reach left"]
+SHOWN += ["to stop +31.2 J (ankles cannot)", "to the plan -4.5 J (ankles can)"]
+SHOWN += ["right foot 0.70 m ahead, 0.15 m right of the left, 0.21 m spare"]
 
 
 SHOWN += ["every 80.0 ms", "latency 0.13 ms (99% below 0.256 ms, worst 1.90 ms)"]
@@ -106,47 +132,86 @@ SHOWN += ["dropped 7 frames without room"]
 
 @pytest.mark.parametrize("text", SHOWN)
 def test_every_number_is_shown_drawn_or_as_a_line(text):
-    assert text in drawn(*view())
-    assert text in dashboard.summary(*view())
+    assert text in drawn(heard())
+    assert text in dashboard.summary(heard())
 
 
 def test_the_line_is_one_line():
-    assert "\n" not in dashboard.summary(*view())
+    assert "\n" not in dashboard.summary(heard())
 
 
 @pytest.mark.parametrize("silent_s", [0.0, 1.0])
 def test_fresh_data_are_not_called_old(silent_s):
-    assert "no message" not in drawn(*view(), silent_s=silent_s)
-    assert "no message" not in dashboard.summary(*view(), silent_s)
+    assert "no message" not in drawn(heard(silent_s=silent_s))
+    assert "no message" not in dashboard.summary(heard(silent_s=silent_s))
 
 
 def test_silence_of_more_than_a_second_is_said():
     words = "no message from the firmware for 1.4 s"
-    assert words in drawn(*view(), silent_s=1.4)
-    assert words in dashboard.summary(*view(), 1.4)
-    assert words in drawn(*[None] * 5, silent_s=1.4)
+    assert words in drawn(heard(silent_s=1.4))
+    assert words in dashboard.summary(heard(silent_s=1.4))
+    assert words in drawn(Heard(silent_s=1.4))
 
 
-@pytest.mark.parametrize("missing", range(5))
+SHOWN_OF = {
+    "plan": "phase 60%",
+    "scores": "0.62",
+    "verdict": "31.2 J",
+    "balance": "+0.053",
+    "health": "tick 512",
+    "status": "900 frames accepted",
+}
+
+
+@pytest.mark.parametrize("missing", SHOWN_OF)
 def test_a_channel_that_is_silent_hides_no_other(missing):
-    told = view()
-    told[missing] = None
-    text = drawn(*told)
-    assert ("phase 2" in text) == (missing != 0)
-    assert ("0.62" in text) == (missing != 1)
-    assert ("+0.097 m" in text and "31.2 J" in text) == (missing != 2)
-    assert ("tick 512" in text) == (missing != 3)
-    assert ("900 frames accepted" in text) == (missing != 4)
+    text = drawn(heard(**{missing: None}))
+    assert [name for name, shown in SHOWN_OF.items() if shown not in text] == [missing]
+
+
+def test_all_of_it_fits_a_small_terminal():
+    """24 lines of 80, with every number, a step that ends the walk and a host in trouble."""
+    message = verdict()
+    message.level, message.recovery_stops = verdict_t.LEVEL_UNSTABLE, 1
+    lines = drawn(heard(verdict=message), width=80).splitlines()
+    assert len(lines) <= 24 and {len(line) for line in lines} == {80}
 
 
 def test_the_level_comes_first_and_large_and_in_words():
-    text = drawn(*view())
-    rows = [line.strip("│ ") for line in text.splitlines()[1:5]]
-    assert rows == [
+    text = drawn(heard())
+    rows = [line.strip("│ ") for line in text.splitlines()[1:7]]
+    assert rows[:4] == [
         *(row.strip() for row in large("CAUTION").splitlines()),
         "level: caution, sideways motion departs from the expected",
     ]
-    assert dashboard.summary(*view()).startswith("CAUTION: sideways")
+    assert (
+        rows[4].split() == "margin ░░░░│█▒▒░░░░░░░░░░░░░░░░░ +0.053".split() + rows[4].split()[3:]
+    )
+    assert rows[5].startswith("driven by: ")
+    line = dashboard.summary(heard())
+    assert line.startswith("CAUTION: sideways motion departs from the expected | margin +0.053 (")
+
+
+@pytest.mark.parametrize(
+    ("value", "bar"),
+    [
+        (-3.0, "████│▒▒▒" + "░" * 17),
+        (-0.04, "░░░█│▒▒▒" + "░" * 17),
+        (0.0, "░░░░│▒▒▒" + "░" * 17),
+        (0.08, "░░░░│██▒" + "░" * 17),
+        (0.4, "░░░░│" + "█" * 10 + "░" * 10),
+        (3.0, "░░░░│" + "█" * 20),
+    ],
+)
+def test_the_margin_starts_at_unstable_and_shows_the_caution_band(value, bar):
+    assert dashboard.balance_bar(value, 0.1).plain == bar
+
+
+def test_a_margin_that_is_not_known_has_no_bar_and_no_driver():
+    message = balance()
+    message.margin = message.caution_below = math.nan
+    text = drawn(heard(balance=message))
+    assert re.search(r"margin +·{25} n/a", text) and "driven by: n/a" in text
 
 
 @pytest.mark.parametrize("name", contract.LEVELS)
@@ -158,21 +223,21 @@ def test_every_level_can_be_written_large(name):
 def test_a_level_without_a_reason_stands_alone():
     message = verdict()
     message.level, message.reason = verdict_t.LEVEL_STABLE, verdict_t.REASON_NONE
-    assert "level: stable\n" in re.sub(r" *│", "", drawn(*view(verdict=message)))
-    assert dashboard.summary(*view(verdict=message)).startswith("STABLE | plan:")
+    assert "level: stable\n" in re.sub(r" *│", "", drawn(heard(verdict=message)))
+    assert dashboard.summary(heard(verdict=message)).startswith("STABLE | margin")
 
 
 def test_after_a_fall_no_score_is_shown():
     """The firmware goes on scoring the posture that it measures, of somebody who lies there."""
-    for text in (drawn(*view(), fallen=True), dashboard.summary(*view(), fallen=True)):
+    for text in (drawn(heard(fallen=True)), dashboard.summary(heard(fallen=True))):
         assert "fell" in text.lower() and "scores are not available" in text
         for label in ("S_pend", "S_jump", "S_SW", "CoM in BoS", "XCoM in E-BoS"):
             assert re.search(rf"{re.escape(label)} .*?n/a", text), label
-        assert "energy: n/a" in text and "recovery step: n/a" in text
+        assert "energy: n/a" in text and "recovery: n/a" in text
         for number in ("0.62", "+0.083 m", "-4.5 J", "0.21 m of reach", "CAUTION"):
             assert number not in text
     assert large("FELL") != "FELL"
-    assert "█" not in drawn(*view(), fallen=True).split("S_pend")[1]
+    assert "█" not in drawn(heard(fallen=True)).split("S_pend")[1]
 
 
 def test_the_listener_knows_of_a_fall_while_it_is_told_of_one():
@@ -188,7 +253,7 @@ def test_the_listener_knows_of_a_fall_while_it_is_told_of_one():
 
 
 def test_an_old_level_is_not_shown():
-    text = drawn(*view(), silent_s=1.4)
+    text = drawn(heard(silent_s=1.4))
     assert "level: unknown, no message from the firmware for 1.4 s" in text
     assert "caution" not in text.lower()
     assert large("CAUTION").splitlines()[0] not in text
@@ -197,7 +262,7 @@ def test_an_old_level_is_not_shown():
 def test_a_level_and_a_reason_of_other_firmware_are_given_by_number():
     message = verdict()
     message.level, message.reason = 9, 99
-    assert "level: level 9, reason 99" in drawn(*view(verdict=message))
+    assert "level: level 9, reason 99" in drawn(heard(verdict=message))
 
 
 def test_no_recovery_step_is_said_and_by_how_much():
@@ -213,7 +278,7 @@ def test_a_recovery_step_back_to_the_left_that_ends_the_walk():
     message.recovery_foot, message.recovery_stops = verdict_t.LEFT, 1
     message.recovery_landing_m = [-0.2, 0.3]
     told = dashboard.recovery_step(message)
-    assert "left foot 0.20 m behind and 0.30 m to the left of the right one" in told
+    assert "left foot 0.20 m behind, 0.30 m left of the right" in told
     assert told.endswith(", ends the walk")
 
 
@@ -317,11 +382,11 @@ def test_faults_limits_and_status_are_named():
 
 
 @pytest.mark.parametrize(
-    ("value", "full"), [(-3.0, 0), (0.0, 0), (0.5, 12), (1.0, 25), (7.0, 25), (math.inf, 25)]
+    ("value", "full"), [(-3.0, 0), (0.0, 0), (0.5, 6), (1.0, 13), (7.0, 13), (math.inf, 13)]
 )
 def test_a_score_is_full_at_the_reference_and_empty_at_the_limit(value, full):
     bar = dashboard.score_bar(value).plain
-    assert bar == "█" * full + "░" * (25 - full)
+    assert bar == "█" * full + "░" * (13 - full)
 
 
 @pytest.mark.parametrize("value_m", [0.1, 0.4, 3.0, math.inf])
@@ -330,7 +395,7 @@ def test_a_margin_points_right_inside_and_left_outside(value_m):
     assert inside == outside[::-1]
     left, right = inside.split("│")
     assert "█" not in left
-    assert right.count("█") == {0.1: 3}.get(value_m, 12)
+    assert right.count("█") == {0.1: 2}.get(value_m, 6)
 
 
 def test_no_number_draws_no_bar():
@@ -366,13 +431,15 @@ def test_the_listener_knows_for_how_long_it_heard_nothing():
 
 def test_once_prints_one_line_of_a_log(tmp_path):
     log = lcm.EventLog(str(tmp_path / "log"), "w", overwrite=True)
-    for channel, message in zip(CHANNELS, view(), strict=True):
+    told = heard()
+    messages = [getattr(told, kind.removesuffix("_t")) for kind in CHANNELS.values()]
+    for channel, message in zip(CHANNELS, messages, strict=True):
         log.write_event(0, channel, message.encode())
     log.close()
     url = f"file://{tmp_path / 'log'}?speed=0"
     done = subprocess.run([*MONITOR, "--once", "--lcm", url], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.splitlines() == [dashboard.summary(*view())]
+    assert done.stdout.splitlines() == [dashboard.summary(heard())]
 
 
 def test_once_fails_when_nothing_comes():

@@ -305,6 +305,11 @@ def test_the_host_answers_as_the_core_fed_offline_with_the_same_frames(capsys, t
         cells = [*row, *(state[name] for name in STATE_COLUMNS[1:])]
         assert list(line.values()) == [format_cell(cell) for cell in cells]
     levels = [line["level"] for line in written]
+    for line in written:
+        known = line["level"] != "unknown"
+        assert (line["margin"] != "") == (line["caution_below"] != "") == known
+        assert (float(line["margin"] or 1) <= 0) == (line["level"] == "unstable")
+    assert float(written[-1]["recovery_margin_m"]) != 0
     assert levels[12] == "unknown" and written[12]["reason"] == "input"
     assert written[12]["can_stop"] == written[12]["on_track"] == ""
     assert {written[-1]["can_stop"], written[-1]["on_track"]} <= {"0", "1"}

@@ -25,7 +25,7 @@ from saddlewalk.verdict import reason_words
 TICKS = 163  # of the walk of 13 s
 AGES = ("age of", "median (ms)", "95 % below (ms)", "oldest (ms)", "ticks before it came")
 TROUBLES = ("fault or limit", "meaning", "times", "in all (s)", "first at (s)", "last at (s)")
-ALARMS = ("start (s)", "duration (s)", "level", "reason")
+ALARMS = ("start (s)", "duration (s)", "level", "lowest margin", "driven by", "reason")
 VARIABILITY = ("steps", "foot", "what", "number", "mean", "SD", "CV")
 
 
@@ -201,15 +201,34 @@ def test_alarms_have_start_duration_level_and_reason(walk, tmp_path, unseen):
         elif 50 <= tick < 53:
             verdict.level, verdict.reason = 3, 3
 
-    log = write_events(tmp_path / "log", changed(events_of(walk), "VERDICT", alarm))
-    page = report(log, tmp_path / "a.html")
+    def margin(tick, balance):
+        balance.margin, balance.driver = 0.5, 13
+        if 40 <= tick < 50:
+            balance.margin, balance.driver = (0.05, 14) if tick == 44 else (0.08, 15)
+        elif 50 <= tick < 53:
+            balance.margin, balance.driver = -0.01 * (tick - 49), 16
+
+    events = changed(changed(events_of(walk), "VERDICT", alarm), "BALANCE", margin)
+    page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
+    lowest = f"-0.030 at 4.16 s: {reason_words(16)}; unstable begins at 0"
+    assert page.short["lowest margin"] == lowest
     both = f"{reason_words(9)}; {reason_words(10)}"
     assert page.tables[ALARMS] == [
-        ["3.20", "0.80", "caution", both],
-        ["4.00", "0.24", "unstable", reason_words(3)],
+        ["3.20", "0.80", "caution", "0.050", reason_words(14), both],
+        ["4.00", "0.24", "unstable", "-0.030", reason_words(16), reason_words(3)],
     ]
     assert page.short["times that the level was"] == "unstable 1, caution 1, unknown 0"
     assert ["unstable", "0.24", f"{3 / TICKS:.1%}"] in page.tables["level", "time (s)", "share"]
+
+
+def test_alarms_of_a_log_without_margins_have_none(walk, tmp_path, unseen):
+    def alarm(tick, verdict):
+        verdict.level, verdict.reason = (2, 9) if tick == 40 else (1, 0)
+
+    events = without(changed(events_of(walk), "VERDICT", alarm), "BALANCE")
+    page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
+    row = ["3.20", "0.08", "caution", "not known", "not known", reason_words(9)]
+    assert page.tables[ALARMS] == [row] and page.short["lowest margin"] == "not known"
 
 
 def test_a_fall_has_its_time_on_the_page_and_in_the_pictures(walk, tmp_path, unseen, page):
@@ -221,6 +240,8 @@ def test_a_fall_has_its_time_on_the_page_and_in_the_pictures(walk, tmp_path, uns
     log = write_events(tmp_path / "log", changed(events_of(walk), "TRUTH", fall))
     fallen = report(log, tmp_path / "a.html")
     assert "was emulated (SADDLEWALK_TRUTH) and fell." in fallen.text
+    margins = [message.margin for message in messages(events_of(walk), "BALANCE")]
+    assert fallen.short["lowest margin"].startswith(f"{min(margins[:100]):.3f} at ")
     assert re.fullmatch(r"at 8\.\d\d s: scores, levels and .*", fallen.short["the wearer fell"])
     (run,) = load_session(log).runs
     assert run.fell_s == pytest.approx(100 * TICK_S, abs=0.001)

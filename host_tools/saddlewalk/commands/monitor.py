@@ -4,7 +4,10 @@ import argparse
 import sys
 import time
 from dataclasses import dataclass, field
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
+
+if TYPE_CHECKING:
+    from saddlewalk.dashboard import Heard
 
 REFRESH_S = 0.2
 LINE_S = 1.0
@@ -13,6 +16,7 @@ CHANNELS = {
     "SADDLEWALK_PLAN": "plan_t",
     "SADDLEWALK_SCORES": "scores_t",
     "SADDLEWALK_VERDICT": "verdict_t",
+    "SADDLEWALK_BALANCE": "balance_t",
     "SADDLEWALK_HEALTH": "health_t",
     "SADDLEWALK_STATUS": "status_t",
 }
@@ -90,7 +94,7 @@ class Listener:
         """One plain line of what was heard."""
         from saddlewalk.dashboard import summary
 
-        return summary(*self._view()) + (f" | {self._note()}" if self.malformed else "")
+        return summary(self._heard()) + (f" | {self._note()}" if self.malformed else "")
 
     def panel(self) -> Any:
         """The same for a terminal."""
@@ -98,13 +102,14 @@ class Listener:
 
         from saddlewalk.dashboard import render
 
-        panel = render(*self._view())
+        panel = render(self._heard())
         return Group(panel, self._note()) if self.malformed else panel
 
-    def _view(self) -> tuple[Any, ...]:
-        """The newest of CHANNELS, for how long nothing came, and whether the wearer has fallen."""
-        latest = (self.latest.get(channel) for channel in CHANNELS)
-        return *latest, time.monotonic() - self.heard_s, self.fallen
+    def _heard(self) -> "Heard":
+        from saddlewalk.dashboard import Heard
+
+        latest = {kind.removesuffix("_t"): self.latest.get(c) for c, kind in CHANNELS.items()}
+        return Heard(**latest, silent_s=time.monotonic() - self.heard_s, fallen=self.fallen)
 
     def _note(self) -> str:
         return f"{self.malformed} LCM messages could not be read"

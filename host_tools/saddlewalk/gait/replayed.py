@@ -9,7 +9,7 @@ from saddlewalk.gait.events import Gait
 from saddlewalk.gait.recording import Recording
 
 NUMBER_COLUMNS = "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m".split()
-SCORE_COLUMNS = [*NUMBER_COLUMNS, *verdict.COLUMNS, "faults"]
+SCORE_COLUMNS = [*NUMBER_COLUMNS, *verdict.COLUMNS, "recovery_margin_m", "faults"]
 
 
 def score_row(time_s: float, scores: dict[str, float]) -> list:
@@ -19,6 +19,7 @@ def score_row(time_s: float, scores: dict[str, float]) -> list:
         round(time_s, 6),
         *(scores[name] for name in names),
         *verdict.cells(scores),
+        scores["MARGIN"],
         f"0x{scores['FAULTS']:04x}",
     ]
 

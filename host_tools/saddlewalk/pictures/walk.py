@@ -14,6 +14,7 @@ from matplotlib.patches import Ellipse, Polygon
 from saddlewalk.contract import LEVELS, MODES, STANDING, STARTING, STOPPING
 from saddlewalk.core import bos_polygon
 from saddlewalk.emulation.wearer import Push
+from saddlewalk.verdict import REASON_WORDS
 
 matplotlib.use("Agg")
 
@@ -38,26 +39,30 @@ LANES = {
 }
 # What says nothing of a wearer who lies on the ground.
 OF_A_POSTURE = (
-    *("s_pend", "s_jump", "s_sw", "level", "true_com_vx_m_s", "true_com_z_m"),
+    *("s_pend", "s_jump", "s_sw", "level", "margin", "caution_below"),
+    *("true_com_vx_m_s", "true_com_z_m"),
     *(name for name, _ in MARGINS),
 )
+BALANCE_SHOWN = (-0.3, 1.0)
 SHADES = {STANDING: "0.85", STARTING: "#DDEEDD", STOPPING: "#F6E3D5"}
 
 Columns = dict[str, np.ndarray]
 
 
 def read_walk(path: Path) -> Columns:
-    """The numbers of walk.csv by column: NaN where a cell is empty, names by their number."""
+    """The numbers of walk.csv by column: NaN where a cell is empty, names by their number; and the
+    driver of the margin by its name."""
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
     codes = {"left": "0", "right": "1"} | {
         name: str(number) for names in (MODES, LEVELS) for number, name in enumerate(names)
     }
-    return {
+    columns = {
         name: np.array([float(codes.get(row[name], row[name]) or "nan") for row in rows])
         for name in rows[0]
-        if name not in ("reason", "faults", "limits")
+        if name not in ("reason", "driver", "faults", "limits")
     }
+    return columns | {"driver": np.array([row["driver"] for row in rows])}
 
 
 def until_fall(walk: Columns, fell_s: float | None) -> Columns:
@@ -83,14 +88,18 @@ def figure_of(
     walk: Columns, pushes: Sequence[Push], config: Any, fell_s: float | None = None
 ) -> Figure:
     walk = until_fall(walk, fell_s)
-    figure = Figure(figsize=(13, 14), dpi=110, layout="constrained")
-    whole, above, speed, height, scores, level, margins = figure.subplots(
-        7, 1, height_ratios=(0.6, 1.7, 0.8, 0.8, 0.9, 0.6, 0.9)
+    figure = Figure(figsize=(13, 15), dpi=110, layout="constrained")
+    balance, level, whole, above, speed, height, scores, margins = figure.subplots(
+        8, 1, height_ratios=(1.0, 0.6, 0.6, 1.7, 0.8, 0.8, 0.9, 0.9)
     )
     shown = _shown(walk["t_s"], pushes, fell_s)
     closely = {name: column[shown] for name, column in walk.items()}
     fate = "" if fell_s is None else f" and falls at {fell_s:.2f} s"
     figure.suptitle(f"A walk: the plan, and the wearer who follows it{fate}")
+    draw_balance(balance, walk["t_s"], walk["margin"], walk["caution_below"])
+    _name_lowest(balance, walk)
+    draw_level(level, walk)
+    _mark(level, pushes, fell_s)
     _draw_whole(whole, walk, closely)
     _draw_above(above, closely, pushes, config)
     if fell_s is not None:
@@ -105,11 +114,9 @@ def figure_of(
     _draw_lines(margins, walk, MARGINS)
     margins.set(ylabel="margin in the base\nof support (m)", xlabel="time (s)")
     margins.set_ylim(bottom=max(margins.get_ylim()[0], MARGIN_SHOWN_M))
-    for axes in (speed, height, scores, margins):
+    for axes in (balance, speed, height, scores, margins):
         _mark(axes, pushes, fell_s)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    draw_level(level, walk)
-    _mark(level, pushes, fell_s)
     return figure
 
 
@@ -235,6 +242,38 @@ def _draw_lines(
             axes.axvspan(start_s, end_s, color=shade, lw=0, zorder=0)
         if modes:
             axes.fill_between([], [], color=shade, label=MODES[mode])
+
+
+def draw_balance(
+    axes: Axes, time_s: np.ndarray, margin: np.ndarray, caution_below: np.ndarray
+) -> None:
+    """The margin that decides the level; below it the caution band, and from 0 down unstable."""
+    low, high = BALANCE_SHOWN
+    band = {"lw": 0, "zorder": 0}
+    axes.fill_between(time_s, 0, caution_below, alpha=0.35, **band, **LANES["caution"])
+    axes.axhspan(low, 0, alpha=0.2, **band, **LANES["unstable"])
+    axes.plot(time_s, margin, color=BLUE, lw=1.8, label="margin")
+    axes.fill_between([], [], label="caution", alpha=0.35, **LANES["caution"])
+    axes.fill_between([], [], label="unstable", alpha=0.2, **LANES["unstable"])
+    axes.axhline(0, color="0.4", lw=0.8)
+    known = margin[np.isfinite(margin)]
+    least, most = (known.min(), known.max()) if len(known) else (0.0, high)
+    axes.set_ylim(max(min(least - 0.05, -0.1), low), min(most + 0.1, high))
+    axes.set(ylabel="margin (share of\nthe CoM's height)")
+    axes.set_xlim(time_s[0], time_s[-1])
+
+
+def _name_lowest(axes: Axes, walk: Columns) -> None:
+    """How low the margin came, and what drove it there."""
+    if np.isnan(walk["margin"]).all():
+        return
+    index = int(np.nanargmin(walk["margin"]))
+    at_s, margin = walk["t_s"][index], walk["margin"][index]
+    words = REASON_WORDS.get(str(walk["driver"][index]), "")
+    axes.plot(at_s, max(margin, axes.get_ylim()[0]), "o", color=BLUE, ms=6)
+    axes.set_title(
+        f"Lowest margin {margin:.2f} at {at_s:.2f} s: {words}", loc="left", size="medium"
+    )
 
 
 def draw_level(axes: Axes, walk: Columns) -> None:

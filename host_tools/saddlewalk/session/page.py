@@ -150,11 +150,26 @@ def _in_short(run: Run, way: Way | None) -> str:
         ]
     else:
         rows.append(["steps, distance, speed", UNKNOWN])
+    rows.append(["lowest margin", _lowest(run)])
     found = alarms(run)
     counts = {name: int((found.value == LEVELS.index(name)).sum()) for name in LEVELS}
     told = [f"{name} {counts[name]}" for name in ("unstable", "caution", "unknown")]
     rows.append(["times that the level was", ", ".join(told) if run.has("verdict") else UNKNOWN])
     return table(("what", "how much"), rows)
+
+
+def _lowest(run: Run) -> str:
+    """How near to unstable the wearer came, when, and what drove it."""
+    lowest = run.lowest_margin(run.upright)
+    if lowest is None:
+        return UNKNOWN
+    tick, margin, words = lowest
+    return f"{margin:.3f} at {run.time_s[tick]:.2f} s: {words}; unstable begins at 0"
+
+
+def _lowest_cells(run: Run, ticks: slice) -> list[str]:
+    lowest = run.lowest_margin(ticks)
+    return [UNKNOWN, UNKNOWN] if lowest is None else [f"{lowest[1]:.3f}", lowest[2]]
 
 
 def _levels(run: Run) -> str:
@@ -179,11 +194,13 @@ def _alarms(run: Run) -> str:
             f"{each.start_s:.2f}",
             f"{each.duration_s:.2f}",
             f"**{LEVELS[each.value]}**" if LEVELS[each.value] == "unstable" else LEVELS[each.value],
+            *_lowest_cells(run, each.ticks),
             "; ".join(map(_plain, run.reasons(each.ticks))),
         ]
         for each in listed
     ]
-    return table(("start (s)", "duration (s)", "level", "reason"), rows) + _not_listed(
+    header = ("start (s)", "duration (s)", "level", "lowest margin", "driven by", "reason")
+    return table(header, rows) + _not_listed(
         len(found), "alarms: these are the worst, and of these the longest"
     )
 

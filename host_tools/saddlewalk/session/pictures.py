@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from saddlewalk.contract import LEVELS
-from saddlewalk.pictures.walk import BLUE, FEET, GREEN, LANES, ORANGE
+from saddlewalk.pictures.walk import BALANCE_SHOWN, BLUE, FEET, GREEN, LANES, ORANGE, RED
 from saddlewalk.session.quality import Trouble
 from saddlewalk.session.runs import Run, Span, Spans
 from saddlewalk.session.steps import QUANTITIES, Way
@@ -54,14 +54,15 @@ def draw(run: Run, way: Way | None, troubles: Sequence[Trouble]) -> dict[str, Pi
 
 
 _LEVEL = (
-    "The level that was announced, and what decided it. Empty: no verdict came, or the firmware "
-    "was silent."
+    "The margin that decides the level (a share of the CoM's usual height; 0 and below is red: "
+    "unstable), the level that was announced, and what decided it. Empty: no verdict came, or the "
+    "firmware was silent."
 )
 _SCORES = (
-    "Speed; scores (1: the reference, 0: the limit); margins in the base of support and the reach "
-    "that a recovery step has left (negative: outside, or lacking); energy beyond that of standing "
-    "still and beyond the plan's. Shaded: the alarms, caution lightly and unstable darkly. "
-    "What lies far beyond is cut off."
+    "The margin that decides the level; speed; scores (1: the reference, 0: the limit); margins in "
+    "the base of support and the reach that a recovery step has left (negative: outside, or "
+    "lacking); energy beyond that of standing still and beyond the plan's. Shaded: the alarms, "
+    "caution lightly and unstable darkly. What lies far beyond is cut off."
 )
 _ALARM = "The same closely: {} from {:.2f} s."
 _STEPS = "Each step, {}, by the foot that landed."
@@ -71,9 +72,10 @@ _TROUBLES = "When each fault and limit was told."
 def _draw_level(run: Run) -> bytes:
     reasons = run.column("verdict", "reason")
     known = [int(number) for number in np.unique(reasons[reasons > 0])]
-    figure = Figure(figsize=(13, 2.2 + 0.3 * len(known)), dpi=110, layout="constrained")
-    heights = (len(LANES), max(len(known), 1))
-    level, reason = figure.subplots(2, 1, height_ratios=heights, sharex=True)
+    figure = Figure(figsize=(13, 4.6 + 0.3 * len(known)), dpi=110, layout="constrained")
+    heights = (8, len(LANES), max(len(known), 1))
+    margin, level, reason = figure.subplots(3, 1, height_ratios=heights, sharex=True)
+    _draw_margin(margin, run, (0.0, run.duration_s))
     for lane, (name, style) in enumerate(LANES.items()):
         _bar(level, _spans(run, run.levels == LEVELS.index(name)), run.duration_s, lane, style)
     level.set(ylabel="level", ylim=(-0.5, len(LANES) - 0.5))
@@ -121,10 +123,11 @@ def _about(span: Span) -> tuple[float, float]:
 
 def _draw_scores(run: Run, from_s: float = 0.0, to_s: float | None = None) -> bytes:
     """The whole run, or a part of it."""
-    figure = Figure(figsize=(13, 11), dpi=110, layout="constrained")
+    figure = Figure(figsize=(13, 13), dpi=110, layout="constrained")
     figure.get_layout_engine().set(w_pad=0.1)
-    speed, scores, margins, energy = figure.subplots(4, 1, sharex=True)
+    balance, speed, scores, margins, energy = figure.subplots(5, 1, sharex=True)
     shown = (from_s, to_s or run.duration_s)
+    _draw_margin(balance, run, shown)
     _lines(speed, run, _speeds(run), shown, ylabel="speed (m/s)")
     _lines(scores, run, _columns(run, "scores", _SHOWN_SCORES), shown, ylabel="stability score")
     _cut_off(scores, SHOWN_SCORES)
@@ -138,6 +141,14 @@ def _draw_scores(run: Run, from_s: float = 0.0, to_s: float | None = None) -> by
     return _png(figure)
 
 
+def _draw_margin(axes: Axes, run: Run, shown: tuple[float, float]) -> None:
+    """The margin that decides the level, and its limits: unstable at 0, caution below a line."""
+    _lines(axes, run, _columns(run, "balance", _SHOWN_BALANCE), shown, ylabel="margin")
+    _cut_off(axes, BALANCE_SHOWN)
+    axes.axhspan(min(axes.get_ylim()[0], -0.05), 0, color=RED, alpha=0.15, lw=0, zorder=0)
+
+
+_SHOWN_BALANCE = {"margin; unstable\nfrom 0 down": "margin", "caution below": "caution_below"}
 _SHOWN_SCORES = {"S_pend": "s_pend", "S_jump": "s_jump", "S_SW": "s_sw"}
 _SHOWN_MARGINS = {"CoM": "mos_com_m", "XCoM": "mos_xcom_m"}
 _SHOWN_ENERGIES = {"to stop": "excess_stop_j", "to the plan": "excess_track_j"}

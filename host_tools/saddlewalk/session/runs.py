@@ -41,6 +41,7 @@ KEPT: dict[str, tuple] = {
     "verdict": (
         *("level", "reason", "compared", "excess_stop_j", "excess_track_j", "recovery_margin_m"),
     ),
+    "balance": ("driver", "margin", "caution_below"),
     "health": ("status", "limits", "faults"),
 }
 
@@ -238,6 +239,24 @@ class Run:
         numbers, first = np.unique(told[told >= 0], return_index=True)
         words = (reason_words(int(number)) for number in numbers[np.argsort(first)])
         return [each for each in words if each]
+
+    def lowest_margin(self, ticks: slice) -> tuple[int, float, str] | None:
+        """(tick, margin, what drove it in words) of the lowest margin; None if none is known."""
+        margins = self._margins[ticks]
+        if not np.isfinite(margins).any():
+            return None
+        tick = ticks.start + int(np.nanargmin(margins))
+        driver = int(self.column("balance", "driver")[tick])
+        return tick, float(self._margins[tick]), reason_words(driver)
+
+    @cached_property
+    def upright(self) -> slice:
+        """The ticks before an emulated wearer fell, or all."""
+        return slice(0, min(self.falls[0], self.ticks) if self.falls else self.ticks)
+
+    @cached_property
+    def _margins(self) -> np.ndarray:
+        return self.column("balance", "margin")
 
     @cached_property
     def _reasons(self) -> np.ndarray:
