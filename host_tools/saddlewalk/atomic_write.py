@@ -37,7 +37,7 @@ def own_descriptor(path: str | Path) -> int | None:
 
 
 @contextlib.contextmanager
-def whole_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO]:
+def atomic_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO]:
     """A file that is at `path` once all is written; "-": standard output.
 
     What is no ordinary file, or is open already, is written to and not replaced. Raises UserError,
@@ -58,13 +58,13 @@ def whole_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO]:
 
 
 def write_text(option: str, path: str | Path, text: str) -> None:
-    """Write to a whole_file()."""
-    with whole_file(option, path) as file:
+    """Write to a atomic_file()."""
+    with atomic_file(option, path) as file:
         file.write(text)
 
 
 @contextlib.contextmanager
-def whole_folder(option: str, folder: Path, names: Sequence[str]) -> Iterator[Path]:
+def atomic_folder(option: str, folder: Path, names: Sequence[str]) -> Iterator[Path]:
     """A new folder whose files come to `folder` once all are written.
 
     Files of `names` in `folder` that are not written again are removed: they are of another run.
@@ -80,7 +80,7 @@ def whole_folder(option: str, folder: Path, names: Sequence[str]) -> Iterator[Pa
 
 
 class RunFolder:
-    """A whole_folder() for what cannot be had again: files that grow while something happens.
+    """A atomic_folder() for what cannot be had again: files that grow while something happens.
 
     They grow in FOLDER/unfinished. A run that fails or is ended stays there if FOLDER holds an
     earlier run, and else comes to FOLDER as far as it went.

@@ -16,7 +16,8 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from saddlewalk import process_words
+from saddlewalk import status_text
+from saddlewalk.banner import banner
 from saddlewalk.contract import (
     FAULTS,
     LEVELS,
@@ -29,7 +30,6 @@ from saddlewalk.contract import (
     bit_names,
     name_of,
 )
-from saddlewalk.letters import large
 from saddlewalk.verdict import level_name, reason_words
 
 SILENT_AFTER_S = 1.0
@@ -86,18 +86,18 @@ def render(heard: Heard) -> RenderableType:
         return Panel(Text(waiting(heard.silent_s)), title="saddlewalk", border_style="yellow")
     level, words = announced(heard)
     style = LEVEL_STYLES.get(level, "")
-    told = heard.still_true()
+    current = heard.still_true()
     parts = [
-        Text(large(level.upper()), style=f"bold {style}"),
+        Text(banner(level.upper()), style=f"bold {style}"),
         Text(f"level: {level}{words and f', {words}'}", style="bold"),
-        _margin_row(told.balance),
-        Text(f"driven by: {driver(told.balance)}"),
-        _bars(told),
-        Text(f"recovery: {recovery_step(told.verdict)}"),
-        Text(f"energy: {energy(told.verdict)}"),
-        Text(gait(told.plan)),
-        Text(condition(told.health)),
-        *(Text(line) for line in process_words.lines(told.status)),
+        _margin_row(current.balance),
+        Text(f"driven by: {driver(current.balance)}"),
+        _bars(current),
+        Text(f"recovery: {recovery_step(current.verdict)}"),
+        Text(f"energy: {energy(current.verdict)}"),
+        Text(gait(current.plan)),
+        Text(condition(current.health)),
+        *(Text(line) for line in status_text.lines(current.status)),
     ]
     return Panel(Group(*parts), title="saddlewalk", border_style=style)
 
@@ -107,17 +107,17 @@ def summary(heard: Heard) -> str:
     if heard.silent_s > SILENT_AFTER_S or heard.nothing:
         return waiting(heard.silent_s)
     level, words = announced(heard)
-    told = heard.still_true()
+    current = heard.still_true()
     return " | ".join(
         (
             f"{level.upper()}{words and f': {words}'}",
-            f"margin {margin(told.balance)}, driven by: {driver(told.balance)}",
-            "  ".join(f"{label} {_number(*of)}" for label, *of in _numbers(told)),
-            f"recovery: {recovery_step(told.verdict)}",
-            f"energy: {energy(told.verdict)}",
-            gait(told.plan),
-            condition(told.health),
-            *process_words.lines(told.status),
+            f"margin {margin(current.balance)}, driven by: {driver(current.balance)}",
+            "  ".join(f"{label} {_number(*of)}" for label, *of in _numbers(current)),
+            f"recovery: {recovery_step(current.verdict)}",
+            f"energy: {energy(current.verdict)}",
+            gait(current.plan),
+            condition(current.health),
+            *status_text.lines(current.status),
         )
     )
 
@@ -241,9 +241,9 @@ def safe_stop(health) -> str:
     return f"; SAFE STOP, the walk ends: {why}"
 
 
-def _numbers(told: Heard) -> list[tuple[str, object, str]]:
+def _numbers(current: Heard) -> list[tuple[str, object, str]]:
     """(label, message, field) of what is shown as a bar beside or below the margin."""
-    named = [(told.scores, SCORES), (told.scores, MARGINS), (told.verdict, EXPECTED)]
+    named = [(current.scores, SCORES), (current.scores, MARGINS), (current.verdict, EXPECTED)]
     return [(label, message, name) for message, names in named for label, name in names]
 
 
@@ -255,7 +255,7 @@ def _margin_row(balance) -> Table:
     return row
 
 
-def _bars(told: Heard) -> Table:
+def _bars(current: Heard) -> Table:
     """Scores in the left column, margins in the right one."""
     table = Table.grid(padding=(0, 1))
     for width in (6, BAR_CELLS, 8, 13, BAR_CELLS, 8):
@@ -263,7 +263,7 @@ def _bars(told: Heard) -> Table:
     cells = [
         (label, (margin_bar if name.endswith("_m") else score_bar)(_value(message, name)),
          _number(message, name))
-        for label, message, name in _numbers(told)
+        for label, message, name in _numbers(current)
     ]  # fmt: skip
     scores, margins = cells[: len(SCORES)], cells[len(SCORES) :]
     for left, right in itertools.zip_longest(scores, margins, fillvalue=("", "", "")):

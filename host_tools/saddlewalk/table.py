@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TextIO
 
-from saddlewalk.atomic_write import whole_file
+from saddlewalk.atomic_write import atomic_file
 from saddlewalk.errors import UserError
 
 RESOLUTION_S = 0.5e-6  # the firmware counts microseconds
@@ -27,7 +27,7 @@ def format_cell(value: Cell) -> str:
 
 def write_table(out: str | None, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     """Write CSV to the file `out`, whole or not at all; None or "-": stream to standard output."""
-    with whole_file("--out", out or "-") as file:
+    with atomic_file("--out", out or "-") as file:
         _write_rows(file, columns, rows)
 
 

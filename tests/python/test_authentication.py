@@ -43,11 +43,11 @@ class Guarded:
 
     def obeys(self, *frames: can.Message) -> bool:
         """Whether the last of the frames is accepted."""
-        judged = [
+        accepted = [
             self._codec.saddle_wire_accept(self.receiver, f.arbitration_id, bytes(f.data), 8)
             for f in frames
         ]
-        return judged[-1] == self._codec.SADDLE_WIRE_COMMAND
+        return accepted[-1] == self._codec.SADDLE_WIRE_COMMAND
 
     def session(self) -> can.Message:
         frame = ffi.new("saddle_frame_t *")
@@ -76,9 +76,9 @@ def test_c_and_python_make_the_same_codes(codec):
         codec.saddle_wire_encode_code(prepared, session, freshness, command, made)
         data = bytes(made.data)
         code = can.Message(arbitration_id=made.id, is_extended_id=False, data=data)
-        _, told = wire.Receiver().accept(code)
-        assert told["CODE"] == code_of(key, session, freshness, frame)
-        assert (told["FRESHNESS"], told["COUNTER"]) == (freshness, command.data[1] & 15)
+        _, values = wire.Receiver().accept(code)
+        assert values["CODE"] == code_of(key, session, freshness, frame)
+        assert (values["FRESHNESS"], values["COUNTER"]) == (freshness, command.data[1] & 15)
 
 
 def test_what_is_authenticated_is_accepted_and_nothing_else(codec):

@@ -155,7 +155,7 @@ def test_walking_qp_minimises_jerk_and_what_is_off_the_foot_and_the_speed():
 
 
 def test_floor_replays_the_calls_that_the_core_makes():
-    """An argument of erf told for each instant gives the heel-strike angle planned there."""
+    """An argument of erf recorded for each instant gives the heel-strike angle planned there."""
     updates = calls_of_plan()
     count = len(instants(bench.HORIZONS[-1]))
     assert len(updates) >= count

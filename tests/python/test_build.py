@@ -102,9 +102,9 @@ def test_a_missing_cross_compiler_is_named_before_anything_is_configured(tmp_pat
     make = [shutil.which("make"), "-C", paths.CHECKOUT, "controller"]
     environment = {"PATH": str(tmp_path), "HOME": str(tmp_path)}
     result = subprocess.run(make, env=environment, capture_output=True, text=True)
-    told = [line for line in result.stderr.splitlines() if not line.startswith("make")]
-    assert result.returncode == 2 and len(told) == 1
-    assert "apt-get install -y gcc-arm-none-eabi picolibc-arm-none-eabi" in told[0]
+    printed = [line for line in result.stderr.splitlines() if not line.startswith("make")]
+    assert result.returncode == 2 and len(printed) == 1
+    assert "apt-get install -y gcc-arm-none-eabi picolibc-arm-none-eabi" in printed[0]
 
 
 def summary(*reports: Path, **environment: str) -> tuple[int, str]:

@@ -59,17 +59,17 @@ def refusal(capsys, *arguments: str) -> str:
 
 def test_a_recording_that_is_given_twice_is_refused(write, capsys, tmp_path):
     walk = write(walk_of(PERSON, 1.0))
-    told = refusal(capsys, "calibrate", walk, walk, "--out", str(tmp_path / "person.toml"))
-    assert walk in told and "twice" in told
+    printed = refusal(capsys, "calibrate", walk, walk, "--out", str(tmp_path / "person.toml"))
+    assert walk in printed and "twice" in printed
 
 
 def test_names_of_recordings_are_shown_with_their_control_characters_escaped(write, capsys):
     path = write(walk_of(PERSON, 1.2), "\x1b[31m\n\x9bred.csv")
     assert main(["calibrate", path, "--out", "-"]) == 0
     assert main(["follow", path]) == 0
-    told = capsys.readouterr()
-    assert all(line.isprintable() for line in (told.out + told.err).split("\n"))
-    assert r"\x1b[31m\n\x9bred.csv" in (told.out + told.err)
+    printed = capsys.readouterr()
+    assert all(line.isprintable() for line in (printed.out + printed.err).split("\n"))
+    assert r"\x1b[31m\n\x9bred.csv" in (printed.out + printed.err)
 
 
 def test_a_plan_s_own_walks_give_back_its_configuration(write, tmp_path):

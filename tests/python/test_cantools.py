@@ -24,7 +24,7 @@ def program(name: str) -> str:
 
 
 def interface_options(spec: str) -> list[str]:
-    """The bus as python-can's programs, and cantools with them, are told it."""
+    """The bus as python-can's programs, and cantools with them, are given it."""
     kind, _, channel = spec.partition(":")
     return ["-i", {"udp": "saddlewalk_udp"}.get(kind, kind), "-c", channel]
 

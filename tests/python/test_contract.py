@@ -8,7 +8,7 @@ import sys
 import cantools
 import pytest
 
-from saddlewalk import contract, firmware, paths, process_words, ticks, verdict
+from saddlewalk import contract, firmware, paths, status_text, ticks, verdict
 from saddlewalk.session.quality import FAULT_WORDS, LIMIT_WORDS
 from saddlewalk.transport.lcm_types import plan_t, verdict_t
 
@@ -137,7 +137,7 @@ def test_every_code_fits_its_signal():
 
 
 def test_sources_of_commands_are_those_of_the_status():
-    assert list(SOURCES.values()) == [name.upper() for name in process_words.SOURCES]
+    assert list(SOURCES.values()) == [name.upper() for name in status_text.SOURCES]
 
 
 def test_help_needs_no_build():

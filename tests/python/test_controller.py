@@ -50,10 +50,10 @@ def test_a_walk_has_the_very_frames_of_the_host_process(tmp_path, capsys):
     assert_same_frames(firmware_frames(tmp_path / "host"), firmware_frames(tmp_path / "controller"))
     one, other = (tmp_path / name / "walk.csv" for name in ("host", "controller"))
     assert one.read_bytes() == other.read_bytes()
-    told = capsys.readouterr().out
-    assert by_host == by_controller == 0, told
-    assert f"controller: {round(8 / TICK_S)} ticks, 0 late, 0 missed" in told
-    assert "a controller has none" in told
+    printed = capsys.readouterr().out
+    assert by_host == by_controller == 0, printed
+    assert f"controller: {round(8 / TICK_S)} ticks, 0 late, 0 missed" in printed
+    assert "a controller has none" in printed
 
 
 def assert_same_frames(by_host: list[can.Message], by_controller: list[can.Message]) -> None:
@@ -173,8 +173,8 @@ def test_a_settings_page_with_a_flipped_bit_is_not_walked_by(tmp_path, monkeypat
 
     monkeypatch.setattr(qemu, "settings_page", damaged)
     assert demo(tmp_path / "out", "--firmware", "qemu-m4") == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and "settings: the page is damaged" in told
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1 and "settings: the page is damaged" in printed
 
 
 def test_a_controller_that_is_silent_is_told_without_advice_for_the_host(
@@ -187,9 +187,9 @@ def test_a_controller_that_is_silent_is_told_without_advice_for_the_host(
     monkeypatch.setattr(qemu, "running_controller", silent)
     monkeypatch.setattr(exoskeleton, "SILENCE_S", 0.2)
     assert demo(tmp_path / "out", "--firmware", "qemu-m4") == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and "silent for 0.2 s on a line" in told
-    assert "saddlewalk-host" not in told
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1 and "silent for 0.2 s on a line" in printed
+    assert "saddlewalk-host" not in printed
 
 
 def test_what_is_missing_is_named(tmp_path, monkeypatch, capsys):
@@ -197,8 +197,8 @@ def test_what_is_missing_is_named(tmp_path, monkeypatch, capsys):
     for program in ("qemu-system-arm", "arm-none-eabi-gcc"):
         monkeypatch.setenv("PATH", str(tmp_path))
         assert demo(tmp_path / "out", "--firmware", "qemu-m4") == 2
-        told = capsys.readouterr().err
-        assert told.count("\n") == 1 and program in told and "apt-get install" in told
+        printed = capsys.readouterr().err
+        assert printed.count("\n") == 1 and program in printed and "apt-get install" in printed
         (tmp_path / program).write_text("#!/bin/sh\n")
         (tmp_path / program).chmod(0o755)
     assert demo(tmp_path / "out", "--firmware", "qemu-m4") == 2
@@ -209,8 +209,8 @@ def test_what_is_missing_is_named(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize("option", [["--clock", "realtime"], ["--can", "udp"]])
 def test_what_a_controller_cannot_do_is_refused(tmp_path, capsys, option):
     assert demo(tmp_path / "out", "--firmware", "qemu-m4", *option) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and " ".join(option) in told
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1 and " ".join(option) in printed
 
 
 @pytest.fixture

@@ -53,11 +53,11 @@ def rows(folder: Path) -> list[dict[str, str]]:
 
 def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys):
     assert demo(tmp_path, ports) == 0
-    told = capsys.readouterr().out
-    assert "did not fall" in told and "BAD" not in told and "push of 8 N s to 90 degrees" in told
-    assert "stands at the end" in told
-    assert f"{round(22 / TICK_S)} ticks computed again from the log: the same bits\n" in told
-    assert_levels_told(told, [row["level"] for row in rows(tmp_path)])
+    shown = capsys.readouterr().out
+    assert "did not fall" in shown and "BAD" not in shown and "push of 8 N s to 90 degrees" in shown
+    assert "stands at the end" in shown
+    assert f"{round(22 / TICK_S)} ticks computed again from the log: the same bits\n" in shown
+    assert_levels_printed(shown, [row["level"] for row in rows(tmp_path)])
     assert {path.name for path in tmp_path.iterdir()} == FILES
 
     walk = rows(tmp_path)
@@ -91,9 +91,9 @@ def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys
     assert heard.count("SADDLEWALK_TRUTH") == heard.count("SADDLEWALK_PLAN") == ticks
 
 
-def assert_levels_told(told: str, levels: list[str]) -> None:
+def assert_levels_printed(shown: str, levels: list[str]) -> None:
     """The time of each level, in a walk that is mostly stable."""
-    line = next(line for line in told.splitlines() if line.startswith("level: "))
+    line = next(line for line in shown.splitlines() if line.startswith("level: "))
     for name in ("stable", "caution", "unstable", "unknown"):
         assert f"{name} {levels.count(name) * TICK_S:.1f} s" in line
     assert levels.count("stable") > 0.5 * len(levels)
@@ -114,10 +114,10 @@ def test_a_fall_is_told_and_is_not_sound(tmp_path, ports, capsys, monkeypatch):
 
     monkeypatch.setattr(command, "LINE_S", 0.0)
     assert demo(tmp_path, ports, "--speed", "1.2", "--duration", "6", "--push", "80@3:90") == 1
-    told = capsys.readouterr().out
-    assert "fell at" in told and "BAD  the wearer fell" in told
-    assert "stands at the end" not in told  # though the plan stands
-    assert_nothing_is_scored_after_the_fall(told, rows(tmp_path))
+    shown = capsys.readouterr().out
+    assert "fell at" in shown and "BAD  the wearer fell" in shown
+    assert "stands at the end" not in shown  # though the plan stands
+    assert_nothing_is_scored_after_the_fall(shown, rows(tmp_path))
     assert {path.name for path in tmp_path.iterdir()} == FILES
     walk = rows(tmp_path)
     assert walk[-1]["fallen"] == "1"
@@ -125,14 +125,14 @@ def test_a_fall_is_told_and_is_not_sound(tmp_path, ports, capsys, monkeypatch):
     assert "unstable" in alarms and {row["reason"] for row in walk} >= {"none", "no_step"}
 
 
-def assert_nothing_is_scored_after_the_fall(told: str, walk: list[dict[str, str]]) -> None:
+def assert_nothing_is_scored_after_the_fall(shown: str, walk: list[dict[str, str]]) -> None:
     """In the live line and in the times of the levels; walk.csv has what the firmware published."""
     upright = [row["level"] for row in walk if row["fallen"] == "0"]
-    levels = next(line for line in told.splitlines() if line.startswith("level: "))
+    levels = next(line for line in shown.splitlines() if line.startswith("level: "))
     assert levels.endswith(", until the fall")
     times_s = [float(word) for word in levels.split() if word[0].isdigit()]
     assert sum(times_s) == pytest.approx(len(upright) * TICK_S, abs=0.2)
-    live = [line for line in told.splitlines() if line.startswith("FELL: ")]
+    live = [line for line in shown.splitlines() if line.startswith("FELL: ")]
     assert live and all("S_pend n/a" in line and "energy: n/a" in line for line in live)
 
 
@@ -205,8 +205,8 @@ def test_demo_refuses_a_bus_on_which_somebody_walks(tmp_path, ports, capsys):
     ):
         with running_host(*options):
             assert demo(tmp_path, ports, "--duration", "1") == 2
-        told = capsys.readouterr().err
-        assert told.count("\n") == 1 and "busy with another walk" in told
+        shown = capsys.readouterr().err
+        assert shown.count("\n") == 1 and "busy with another walk" in shown
     assert before == {path: path.read_bytes() for path in tmp_path.iterdir()}
 
 
@@ -228,8 +228,8 @@ def test_firmware_and_wearer_have_the_body_that_was_asked_for(tmp_path, ports):
 def test_demo_says_where_it_cannot_write(tmp_path, ports, capsys):
     (tmp_path / "file").write_text("")
     assert demo(tmp_path / "file" / "demo", ports) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and str(tmp_path / "file" / "demo") in told
+    shown = capsys.readouterr().err
+    assert shown.count("\n") == 1 and str(tmp_path / "file" / "demo") in shown
 
 
 def test_what_was_recorded_stays_when_the_firmware_dies(tmp_path, ports, capsys, monkeypatch):
@@ -295,8 +295,8 @@ def test_emulate_without_firmware_says_so(ports, capsys, monkeypatch):
     monkeypatch.setattr(exoskeleton, "SILENCE_S", 0.3)
     for clock in ("lockstep", "realtime"):
         assert main(["emulate", "--clock", clock, *ports]) == 2
-        told = capsys.readouterr().err
-        assert told.count("\n") == 1 and "silent" in told and "saddlewalk-host" in told
+        shown = capsys.readouterr().err
+        assert shown.count("\n") == 1 and "silent" in shown and "saddlewalk-host" in shown
 
 
 def test_emulate_gives_up_on_firmware_that_does_not_hear_it(ports, capsys, monkeypatch):
@@ -306,8 +306,8 @@ def test_emulate_gives_up_on_firmware_that_does_not_hear_it(ports, capsys, monke
     monkeypatch.setattr(exoskeleton, "START_TICKS", 5)
     with running_host(f"--can={ports[1]}", "--lcm=none"):
         assert main(["emulate", *ports]) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and "not do as commanded" in told and "--lcm" in told
+    shown = capsys.readouterr().err
+    assert shown.count("\n") == 1 and "not do as commanded" in shown and "--lcm" in shown
 
 
 @pytest.fixture
@@ -333,8 +333,10 @@ def test_demo_with_a_new_key_commands_by_authenticated_frames_alone(tmp_path, po
     heard = list(log)
     log.close()
     assert "SADDLEWALK_COMMAND" not in {event.channel for event in heard}
-    told = [status_t.decode(event.data) for event in heard if event.channel == "SADDLEWALK_STATUS"]
-    last = told[-1]
+    statuses = [
+        status_t.decode(event.data) for event in heard if event.channel == "SADDLEWALK_STATUS"
+    ]
+    last = statuses[-1]
     assert (last.codes_demanded, last.command_source) == (1, last.SOURCE_CAN)
     assert last.commands_obeyed >= 4 / TICK_S - 4 and last.frames_bad_code == 0
 
@@ -352,8 +354,8 @@ def test_emulate_commands_with_the_key_of_the_firmware(ports, capsys, key_file, 
             with monkeypatch.context() as patch:
                 patch.setattr(exoskeleton, "START_TICKS", 5)
                 assert main([*walk, *options]) == 2
-            told = capsys.readouterr().err
-            assert told.count("\n") == 1 and "give both the same --command-key" in told
+            shown = capsys.readouterr().err
+            assert shown.count("\n") == 1 and "give both the same --command-key" in shown
         assert main([*walk, "--command-key", key_file]) == 0
 
 
@@ -419,13 +421,13 @@ def test_a_run_takes_the_place_of_the_run_before_once_it_is_complete(tmp_path, p
     script = Path(sys.executable).with_name("saddlewalk")
     program = [str(script), "demo", "--out", str(tmp_path), *ports]
     with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as process:
-        told = ""
-        while "starting" not in told:
-            told += process.stdout.readline()
+        shown = ""
+        while "starting" not in shown:
+            shown += process.stdout.readline()
             assert process.poll() is None
         process.send_signal(signal.SIGINT)
-        told += process.communicate(timeout=10)[0]
-    assert "holds an earlier run" in told and f"is in {tmp_path / 'unfinished'}\n" in told
+        shown += process.communicate(timeout=10)[0]
+    assert "holds an earlier run" in shown and f"is in {tmp_path / 'unfinished'}\n" in shown
     after = contents(tmp_path)
     assert before.items() < after.items()
     logs = {"walk.csv", "walk.lcmlog", "walk.candump.log"}
@@ -445,8 +447,8 @@ def test_two_runs_are_not_recorded_in_one_folder_at_once(tmp_path, ports, capsys
     with RunFolder("--out", tmp_path, ["walk.csv"]) as other:
         (other.start() / "walk.csv").write_text("theirs")
         assert demo(tmp_path, ports, "--duration", "1") == 2
-        told = capsys.readouterr().err
-        assert told.count("\n") == 1 and "another run is being recorded there" in told
+        shown = capsys.readouterr().err
+        assert shown.count("\n") == 1 and "another run is being recorded there" in shown
     assert (tmp_path / "walk.csv").read_text() == "theirs"
 
 

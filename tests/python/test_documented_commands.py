@@ -135,7 +135,7 @@ def commands() -> dict[str, argparse.ArgumentParser]:
 
 
 def known_options(words: list[str]) -> set[str] | None:
-    """Those of a program of ours, as it tells them itself; None of any other."""
+    """Those of a program of ours, from its --help; None of any other."""
     program, *rest = words
     if program == ".venv/bin/saddlewalk":
         return set(commands()[rest[0]]._option_string_actions)
@@ -143,8 +143,8 @@ def known_options(words: list[str]) -> set[str] | None:
         own = Path(sys.executable).parent / Path(program).name
         path = own if program.startswith(".venv") else paths.built(program.removeprefix("build/"))
         asked = [path, *([rest[0]] if own.name == "cantools" else []), "--help"]
-        told = subprocess.run(asked, capture_output=True, text=True, check=False)
-        return set(re.findall(r"(?<![\w-])--?[a-zA-Z][\w-]*", told.stdout + told.stderr))
+        help_text = subprocess.run(asked, capture_output=True, text=True, check=False)
+        return set(re.findall(r"(?<![\w-])--?[a-zA-Z][\w-]*", help_text.stdout + help_text.stderr))
     return None
 
 

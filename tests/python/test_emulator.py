@@ -216,7 +216,7 @@ def test_who_keeps_to_the_planned_steps_lands_as_planned_until_the_fall(push):
 def test_a_recovery_step_goes_to_its_place_and_no_faster_than_the_leg():
     body, seen = Body(), []
 
-    def told(recovery: RecoveryStep | None) -> Plan:
+    def plan_with(recovery: RecoveryStep | None) -> Plan:
         return Plan(
             mode=WALKING, support=RIGHT, step_length_m=0.7, speed_m_s=1.2, com_m=0.05 + 0.05j,
             velocity_m_s=1.2 + 0j, feet_m=(0.0 + 0.1j, 0j), foot_heights_m=(0.05, 0.0),
@@ -225,11 +225,11 @@ def test_a_recovery_step_goes_to_its_place_and_no_faster_than_the_leg():
         )  # fmt: skip
 
     wearer = Wearer(body, STEADY)
-    wearer.follow(told(None))
+    wearer.follow(plan_with(None))
     while wearer.feet[LEFT].contact:
         wearer.step()
     step = RecoveryStep(LEFT, 0.7 + 0.5j, urgent=False)
-    wearer.follow(told(step))
+    wearer.follow(plan_with(step))
     while not wearer.feet[LEFT].contact:
         wearer.step()
         seen.append(wearer.feet[LEFT].position_m - wearer.feet[RIGHT].position_m)
@@ -432,6 +432,6 @@ def test_a_bad_option_is_one_line_that_names_it(command, options, named, capsys,
         status = main([command, *options])
     except SystemExit as end:
         status = end.code
-    told = capsys.readouterr()
+    shown = capsys.readouterr()
     assert status == 2
-    assert told.err.count("\n") == 1 and named in told.err and options[0].strip("-") in told.err
+    assert shown.err.count("\n") == 1 and named in shown.err and options[0].strip("-") in shown.err

@@ -12,23 +12,23 @@ from saddlewalk.cli import main
 from saddlewalk.core import ffi, library
 from saddlewalk.emulation.wearer import Body
 from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_margin_m
-from saddlewalk.evaluation.detection import detection_of, evidence, push_limits, recovery_worth
+from saddlewalk.evaluation.detection import detection_of, evidence, push_limits, recovery_benefit
 from saddlewalk.evaluation.region import POSTURES, Posture, bring_to_rest, explore, grid
 from saddlewalk.evaluation.scoring import roc
 from saddlewalk.evaluation.walks import (
-    BEYOND_HELP_S,
     CELLS,
     KINDS,
     MARGINS,
     SOON_S,
     SPEEDS_M_S,
+    WARNING_MIN_S,
     WINDOWS,
     Trial,
     Walk,
     course_of,
     draw,
     evaluate,
-    judge,
+    evaluated_walk,
     run,
 )
 from synthetic_walk import Walk as RecordedWalk
@@ -134,7 +134,7 @@ def test_claims_are_those_of_the_core_and_confusion_counts_every_state():
     assert (region.claims["stays"] <= region.claims["can_stop"]).all()
     for claim in region.claims:
         counts = region.confusion(claim)
-        assert sum(counts.values()) - counts["wrongly_safe_by_work"] == len(states)
+        assert sum(counts.values()) - counts["false_safe_by_work"] == len(states)
 
 
 def test_rates_and_leads_of_made_up_walks():
@@ -177,7 +177,7 @@ def test_worth_counts_the_same_pushes_and_limits_the_staircases_turns():
         walk_of(1, cell=3, impulse_n_s=20.0), walk_of(41, cell=3, impulse_n_s=40.0, fell_at_s=9.0),
         walk_of(81, cell=3, impulse_n_s=10.0),
     ]  # fmt: skip
-    worth = recovery_worth(walks)
+    worth = recovery_benefit(walks)
     assert (worth["pushes"], worth["recovery_alone_survives"], worth["both_survive"]) == (
         2,
         0.5,
@@ -202,12 +202,12 @@ def test_a_push_that_fells_is_foreseen_and_judged_by_its_ticks():
     config = default_config()
     trial = replace(draw(1, 0, "planned", MASS_KG), impulse_n_s=60.0, direction_deg=90.0)
     course = run(trial, config)
-    walk, ticks, fell_at_s = judge(trial, course, course), course.ticks, course.fell_at_s
+    walk, ticks, fell_at_s = evaluated_walk(trial, course, course), course.ticks, course.fell_at_s
     assert walk.fell and trial.push_time_s < walk.alarm_at_s < fell_at_s
     assert ticks["time_s"][-1] < fell_at_s
     since_push_s = ticks["time_s"] - trial.push_time_s
     after = (since_push_s >= 0) & (since_push_s < SOON_S)
-    after &= ticks["time_s"] < fell_at_s - BEYOND_HELP_S
+    after &= ticks["time_s"] < fell_at_s - WARNING_MIN_S
     soon = walk.least["first 0.4 s"]
     assert soon["S_SW"] == np.nanmin(ticks["s_sw"][after])
     assert soon["recovery margin"] == np.nanmin(ticks["recovery_margin_m"][after])
@@ -216,11 +216,11 @@ def test_a_push_that_fells_is_foreseen_and_judged_by_its_ticks():
 
 
 def test_the_same_walks_whatever_the_number_of_jobs():
-    config, told = default_config(), []
-    alone = evaluate(3, 3, config, 1, told.append)
+    config, progress = default_config(), []
+    alone = evaluate(3, 3, config, 1, progress.append)
     shared = evaluate(3, 3, config, 2, lambda done: None)
     assert [repr(walk) for walk in alone] == [repr(walk) for walk in shared]
-    assert told[-1] == len(alone) == len(KINDS) * (3 + 1)
+    assert progress[-1] == len(alone) == len(KINDS) * (3 + 1)
     trial, course = course_of(3, 1, "recovery", config)
     again = next(walk for walk in alone if walk.trial == trial)
     assert repr(again.fell_at_s) == repr(course.fell_at_s)
@@ -241,9 +241,9 @@ def test_the_command_tells_and_writes(tmp_path, capsys):
     (gait / "somebody.csv").write_text(csv_text(RecordedWalk().recording()))
     (gait / "manifest.csv").write_text("file,height_m,mass_kg\nsomebody.csv,1.7,60\n")
     assert main(["evaluate", "--walks", "4", "--gait", str(gait), "--out", str(out)]) == 0
-    told = capsys.readouterr().out
+    printed = capsys.readouterr().out
     for words in ("seed 1", "sensitivity", "recovery margin", "Hof", "sideways", "somebody"):
-        assert words in told
+        assert words in printed
     result = json.loads((out / "evaluation.json").read_text())
     assert result["detection"]["planned"]["pushed"] == 4
     assert result["gait"][0]["height_m"] == pytest.approx(1.7)
@@ -270,6 +270,6 @@ def test_a_bad_option_is_one_line_that_names_it(options, named, capsys):
         status = main(["evaluate", *options])
     except SystemExit as end:
         status = end.code
-    told = capsys.readouterr().err
+    printed = capsys.readouterr().err
     assert status == 2
-    assert told.count("\n") == 1 and named in told and options[0].strip("-") in told
+    assert printed.count("\n") == 1 and named in printed and options[0].strip("-") in printed

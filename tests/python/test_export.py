@@ -136,9 +136,9 @@ def test_without_out_it_lies_beside_the_log(walk, tmp_path, capsys):
 
 def refused(arguments: list[str], capsys) -> str:
     assert main(["export", *arguments]) == 2
-    told = capsys.readouterr()
-    assert (told.out, told.err.count("\n")) == ("", 1)
-    return told.err
+    printed = capsys.readouterr()
+    assert (printed.out, printed.err.count("\n")) == ("", 1)
+    return printed.err
 
 
 @pytest.mark.parametrize(
@@ -155,8 +155,8 @@ def test_what_is_no_log_is_one_line_and_nothing_is_written(
 ):
     (tmp_path / "log").write_bytes(content)
     assert main([*command, str(tmp_path / "log")]) == 2
-    told = capsys.readouterr()
-    assert (told.out, told.err.count("\n")) == ("", 1) and named in told.err
+    printed = capsys.readouterr()
+    assert (printed.out, printed.err.count("\n")) == ("", 1) and named in printed.err
     assert [path.name for path in tmp_path.iterdir()] == ["log"]
 
 
@@ -169,16 +169,16 @@ def test_a_log_of_others_is_refused_and_others_in_ours_are_told(walk, tmp_path, 
     with path.open("ab") as file:
         file.write((walk / "walk.lcmlog").read_bytes())
     assert main(["export", str(path), "--format", "csv"]) == 0
-    told = capsys.readouterr()
-    assert "left out: 1 messages on CAMERA" in told.err and "camera" not in told.out
+    printed = capsys.readouterr()
+    assert "left out: 1 messages on CAMERA" in printed.err and "camera" not in printed.out
 
 
 def test_of_a_log_that_was_cut_the_rest_is_exported_and_told(walk, tmp_path, capsys):
     cut = tmp_path / "cut.lcmlog"
     cut.write_bytes((walk / "walk.lcmlog").read_bytes()[:100000])
     assert main(["export", str(cut), "--format", "csv"]) == 1
-    told = capsys.readouterr()
-    assert "incomplete: " in told.err and "no event" in told.err
+    printed = capsys.readouterr()
+    assert "incomplete: " in printed.err and "no event" in printed.err
     assert (tmp_path / "cut-csv" / "plan.csv").stat().st_size > 1000
 
 
@@ -190,8 +190,8 @@ def test_a_missing_package_is_named_with_what_installs_it(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, package, None)
     arguments = [str(walk / "walk.lcmlog"), "--format", form, "--out", str(tmp_path / "out")]
-    told = refused(arguments, capsys)
-    assert f"--format {form} needs {package}: run `.venv/bin/pip install -e '.[export]'`" in told
+    printed = refused(arguments, capsys)
+    assert f"--format {form} needs {package}: run `.venv/bin/pip install -e '.[export]'`" in printed
     assert not list(tmp_path.iterdir())
 
 
@@ -201,6 +201,6 @@ def test_where_it_cannot_be_written_is_one_line(walk, tmp_path, capsys):
     file, deep = str(tmp_path / "file"), str(tmp_path / "no" / "where.mcap")
     assert f"--out {file}" in refused([log, "--format", "csv", "--out", file], capsys)
     assert f"--out {deep}" in refused([log, "--format", "mcap", "--out", deep], capsys)
-    told = refused([log, "--format", "mcap", "--out", log], capsys)
-    assert f"is the same file as LOG {log}" in told
+    printed = refused([log, "--format", "mcap", "--out", log], capsys)
+    assert f"is the same file as LOG {log}" in printed
     assert [path.name for path in tmp_path.iterdir()] == ["file"]

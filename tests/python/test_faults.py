@@ -13,15 +13,15 @@ from saddlewalk.cli import main
 from saddlewalk.config import configuration
 from saddlewalk.errors import UserError
 from saddlewalk.faults.campaign import Device, campaign, rows_of, run
-from saddlewalk.faults.judge import BAD_PLAN, NO_STOP, OLD_SCORE, SILENT_STOP, Judge
+from saddlewalk.faults.checker import BAD_PLAN, NO_STOP, OLD_SCORE, SILENT_STOP, Checker
 from saddlewalk.faults.live import live_walks, run_live
 from saddlewalk.faults.scenario import (
     KINDS,
     MEASURED,
     MESSAGES,
     Fault,
-    Happening,
     Line,
+    Occurrence,
     read_scenario,
 )
 from saddlewalk.transport import wire
@@ -40,8 +40,8 @@ STANDING = {
 
 def sent_by(kind: str, strength: float, begin_s: float = 0.0, name: str = "MEASURED_LEFT"):
     """FRAMES frames, one every 10 ms, whose X tells the time; what arrives, in its order."""
-    happening = Happening(kind, strength, MESSAGES, begin_s, math.inf)
-    line, sender = Line([happening], np.random.default_rng(1)), wire.Sender()
+    occurrence = Occurrence(kind, strength, MESSAGES, begin_s, math.inf)
+    line, sender = Line([occurrence], np.random.default_rng(1)), wire.Sender()
     for number in range(FRAMES):
         line.send(sender.frame(name, CONTACT=1, X=number / 1000, Y=0.1), number / 100)
     return line, line.due(math.inf)
@@ -88,16 +88,16 @@ def test_duplicates_are_refused_by_their_counter():
 def accepted(arrivals) -> list[dict[str, float]]:
     """The signals of frames that all are good."""
     receiver = wire.Receiver()
-    told = [receiver.accept(arrival.frame) for arrival in arrivals]
-    assert all(told)
-    return [signals for _, signals in told]
+    received = [receiver.accept(arrival.frame) for arrival in arrivals]
+    assert all(received)
+    return [signals for _, signals in received]
 
 
 def test_a_stuck_sensor_repeats_its_first_values_in_good_frames():
     line, arrivals = sent_by("stuck", 0, begin_s=1.0)
-    told = [signals["X"] for signals in accepted(arrivals)]
-    assert told[:101] == pytest.approx([number / 1000 for number in range(101)])
-    assert told[101:] == pytest.approx([0.1] * (FRAMES - 101))
+    positions = [signals["X"] for signals in accepted(arrivals)]
+    assert positions[:101] == pytest.approx([number / 1000 for number in range(101)])
+    assert positions[101:] == pytest.approx([0.1] * (FRAMES - 101))
     assert line.onset_s == 1.01
     assert {arrival.born_s for arrival in arrivals[101:]} == {1.0}
 
@@ -133,8 +133,8 @@ def test_spoofed_frames_have_a_right_crc_and_are_refused_for_their_counter():
 
 
 def test_a_number_that_is_none_is_not_available():
-    told = accepted(sent_by("nan", 1.0)[1])
-    assert all(math.isnan(signals["X"]) != math.isnan(signals["Y"]) for signals in told)
+    received = accepted(sent_by("nan", 1.0)[1])
+    assert all(math.isnan(signals["X"]) != math.isnan(signals["Y"]) for signals in received)
 
 
 def test_the_example_has_every_class_and_is_read_whole():
@@ -183,16 +183,16 @@ def test_the_device_tells_the_ages_of_what_it_was_given():
         assert device.take(sender.frame(name, **STANDING[name]), 1_000_000 + late_us * 10_000)
     repeated = sender.frame("MEASURED_LEFT", **STANDING["MEASURED_LEFT"])
     assert device.take(repeated, 1_040_000) and not device.take(repeated, 1_050_000)
-    told = device.tick(1_060_000)
-    ages = [told["INPUTS"][f"{name}_AGE"] for name in ("COMMAND", "COM", "LEFT", "RIGHT")]
+    messages = device.tick(1_060_000)
+    ages = [messages["INPUTS"][f"{name}_AGE"] for name in ("COMMAND", "COM", "LEFT", "RIGHT")]
     assert ages == [60, 50, 20, 30]
-    assert told["HEALTH"]["REJECTED_FRAMES"] == told["RECEIVED"]["BAD_COUNTER"] == 1
-    assert told["PLAN_STEP"]["VALID"] == 1
+    assert messages["HEALTH"]["REJECTED_FRAMES"] == messages["RECEIVED"]["BAD_COUNTER"] == 1
+    assert messages["PLAN_STEP"]["VALID"] == 1
 
 
 @pytest.fixture(scope="module")
 def steady():
-    """The ticks of a walk to which nothing happens, and its judge's verdict of it."""
+    """The ticks of a walk to which nothing happens, and its checker's verdict of it."""
     return run(scenario_of("none", 0), 0, 0, 1, CONFIG)
 
 
@@ -202,57 +202,59 @@ def scenario_of(kind: str, *strengths: float, messages: tuple[str, ...] = MESSAG
 
 
 def test_nothing_is_found_where_nothing_happens(steady):
-    outcome, told = steady
-    assert outcome.flaws == () and outcome.detected is None and not outcome.fell
+    outcome, history = steady
+    assert outcome.violations == () and outcome.detected is None and not outcome.fell
     assert outcome.state in ("walked on", "caution")
-    assert (outcome.blind, outcome.forged, len(told)) == (0, 0, 100)
+    assert (outcome.blind, outcome.forged, len(history)) == (0, 0, 100)
 
 
-def judged(told, since_s: float = 0.0, usable: bool = True, commanded: bool = True) -> set[str]:
-    """The flaws of ticks whose inputs all came at since_s at the latest."""
-    judge = Judge(CONFIG, BODY, 0.0, walk_commanded=commanded)
-    for number, messages in enumerate(told):
+def violations_in(
+    history, since_s: float = 0.0, usable: bool = True, commanded: bool = True
+) -> set[str]:
+    """The violations of ticks whose inputs all came at since_s at the latest."""
+    checker = Checker(CONFIG, BODY, 0.0, walk_commanded=commanded)
+    for number, messages in enumerate(history):
         now_s = number * 0.08
-        for of in judge.told.values():
+        for of in checker.records.values():
             of.came_s = of.born_s = min(now_s, since_s or now_s)
             of.usable_s = of.came_s if usable or now_s < 2 else 2.0
-        judge.tick(messages, now_s, now_s)
-    return set(judge.flaws)
+        checker.tick(messages, now_s, now_s)
+    return set(checker.violations)
 
 
-def changed(told, number: int, part: str, **signals: float):
+def changed(history, number: int, part: str, **signals: float):
     """The same ticks but for one."""
-    messages = dict(told[number])
+    messages = dict(history[number])
     messages[part] = messages[part] | signals
-    return [*told[:number], messages, *told[number + 1 :]]
+    return [*history[:number], messages, *history[number + 1 :]]
 
 
 def test_the_judge_finds_what_must_not_be(steady):
-    told = steady[1]
-    assert judged(told) == set()
-    assert judged(changed(told, 60, "PLAN_COM", Z=math.nan)) == {BAD_PLAN}
-    assert judged(changed(told, 60, "PLAN_ANKLE", SPEED=2.5)) == {BAD_PLAN}
-    assert judged(changed(told, 60, "PLAN_RIGHT", X=-1.9)) == {BAD_PLAN}
-    assert judged(changed(told, 60, "PLAN_STEP", VALID=0)) == {BAD_PLAN}
-    assert judged(changed(told, 60, "HEALTH", STATUS=4)) == {BAD_PLAN}
-    assert judged(changed(told, 60, "PLAN_EVENTS", MODE=3)) == {SILENT_STOP}
-    assert judged(changed(told, 60, "PLAN_EVENTS", MODE=3), commanded=False) == set()
-    assert judged(told, since_s=4.0) == {OLD_SCORE, NO_STOP}
-    assert judged(told, usable=False) == {NO_STOP}
+    history = steady[1]
+    assert violations_in(history) == set()
+    assert violations_in(changed(history, 60, "PLAN_COM", Z=math.nan)) == {BAD_PLAN}
+    assert violations_in(changed(history, 60, "PLAN_ANKLE", SPEED=2.5)) == {BAD_PLAN}
+    assert violations_in(changed(history, 60, "PLAN_RIGHT", X=-1.9)) == {BAD_PLAN}
+    assert violations_in(changed(history, 60, "PLAN_STEP", VALID=0)) == {BAD_PLAN}
+    assert violations_in(changed(history, 60, "HEALTH", STATUS=4)) == {BAD_PLAN}
+    assert violations_in(changed(history, 60, "PLAN_EVENTS", MODE=3)) == {SILENT_STOP}
+    assert violations_in(changed(history, 60, "PLAN_EVENTS", MODE=3), commanded=False) == set()
+    assert violations_in(history, since_s=4.0) == {OLD_SCORE, NO_STOP}
+    assert violations_in(history, usable=False) == {NO_STOP}
 
 
 def test_a_walk_that_never_ends_though_it_is_said_to_stop_is_found(steady):
-    told = steady[1]
-    for number in range(20, len(told)):
-        told = changed(told, number, "HEALTH", LIMITS=1 << 5)
-    assert judged(told) == {NO_STOP}
+    history = steady[1]
+    for number in range(20, len(history)):
+        history = changed(history, number, "HEALTH", LIMITS=1 << 5)
+    assert violations_in(history) == {NO_STOP}
 
 
 @pytest.mark.parametrize("messages", [MESSAGES, *((name,) for name in MESSAGES)])
 def test_whatever_is_lost_stops_the_walk_in_time(messages):
     scenario = scenario_of("loss", 1.0, messages=messages)
     outcome, _ = run(scenario, 0, 0, 1, CONFIG)
-    assert outcome.flaws == ()
+    assert outcome.violations == ()
     assert (outcome.detected, outcome.state) == (3, "safe stop")
 
 
@@ -273,7 +275,7 @@ def test_whatever_is_lost_stops_the_walk_in_time(messages):
 def test_a_fault_is_detected_and_nothing_is_unsafe(kind, strength, detected, state):
     messages = MEASURED if kind == "stuck" else MESSAGES
     outcome, _ = run(scenario_of(kind, strength, messages=messages), 0, 0, 3, CONFIG)
-    assert outcome.flaws == () and outcome.forged == 0
+    assert outcome.violations == () and outcome.forged == 0
     assert outcome.detected == (outcome.detected if detected is None else detected) is not None
     assert state is None or outcome.state == state
 
@@ -297,7 +299,7 @@ def test_walks_whose_plan_was_out_of_bounds_once(kind, strength, messages, index
     fault = Fault(kind, strength, messages, (1.0, 5.0), 5.0)
     scenario = replace(read_scenario(EXAMPLE), duration_s=14.0, faults=(fault,) * (index + 1))
     outcome, _ = run(scenario, index, number, 1, CONFIG)
-    assert outcome.flaws == ()
+    assert outcome.violations == ()
 
 
 def test_late_data_are_counted_though_the_wire_cannot_tell():
@@ -339,8 +341,8 @@ def test_emulate_has_a_bus_that_fails(tmp_path, capsys):
     with Host("--lcm", url, *QUICK) as host:
         options = ["--can", host.spec, "--lcm", url, "--faults", str(path), "--duration", "3"]
         main(["emulate", *options])
-        told = capsys.readouterr().out
-        assert "  walking" in told and "  stopping" in told
+        printed = capsys.readouterr().out
+        assert "  walking" in printed and "  stopping" in printed
 
 
 @pytest.mark.parametrize(
@@ -363,5 +365,5 @@ def test_the_host_process_stops_a_live_walk_whose_frames_are_lost():
     fault = replace(scenario.faults[0], from_s=(2.0, 2.0))
     scenario = replace(scenario, duration_s=4.0, faults=(fault,))
     outcome = run_live(scenario, 0, 0, 1, CONFIG)
-    assert outcome.flaws == () and outcome.live
+    assert outcome.violations == () and outcome.live
     assert outcome.state == "safe stop" and 2 <= outcome.detected <= 4

@@ -280,11 +280,11 @@ def assert_same_status(status, on_can) -> None:
 
 def assert_same_verdict(verdict, on_can) -> None:
     energy, expected = on_can["SCORES_ENERGY"], on_can["SCORES_EXPECTED"]
-    judged, recovery = on_can["VERDICT"], on_can["RECOVERY"]
+    verdict_frame, recovery = on_can["VERDICT"], on_can["RECOVERY"]
     codes = {
-        "level": judged["LEVEL"],
-        "reason": judged["REASON"],
-        "compared": judged["COMPARED"],
+        "level": verdict_frame["LEVEL"],
+        "reason": verdict_frame["REASON"],
+        "compared": verdict_frame["COMPARED"],
         "paper_stable": energy["PAPER_STABLE"],
         "can_stop": energy["CAN_STOP"],
         "on_track": energy["ON_TRACK"],
@@ -299,14 +299,14 @@ def assert_same_verdict(verdict, on_can) -> None:
     lengths_m = [
         (verdict.ebos_com_m, expected["EBOS_COM"]),
         (verdict.ebos_xcom_m, expected["EBOS_XCOM"]),
-        (verdict.xcom_deviation_m[0], judged["XCOM_DEVIATION_X"]),
-        (verdict.xcom_deviation_m[1], judged["XCOM_DEVIATION_Y"]),
+        (verdict.xcom_deviation_m[0], verdict_frame["XCOM_DEVIATION_X"]),
+        (verdict.xcom_deviation_m[1], verdict_frame["XCOM_DEVIATION_Y"]),
         (verdict.recovery_landing_m[0], recovery["X"]),
         (verdict.recovery_landing_m[1], recovery["Y"]),
         (verdict.recovery_margin_m, recovery["MARGIN"]),
     ]
-    for said, told in lengths_m:
-        assert said == pytest.approx(told, abs=0.51e-4, nan_ok=True)
+    for by_lcm, by_can in lengths_m:
+        assert by_lcm == pytest.approx(by_can, abs=0.51e-4, nan_ok=True)
 
 
 def assert_same_balance(balance, on_can) -> None:
@@ -329,8 +329,8 @@ def assert_same_balance(balance, on_can) -> None:
         0.5e-3: [(balance.walk_step_time_s, step["TIME"])],
     }
     for half_step, pairs in half_steps.items():
-        for said, told in pairs:
-            assert said == pytest.approx(told, abs=1.01 * half_step, nan_ok=True)
+        for by_lcm, by_can in pairs:
+            assert by_lcm == pytest.approx(by_can, abs=1.01 * half_step, nan_ok=True)
 
 
 def test_the_verdict_by_lcm_has_no_numbers_where_there_are_none():

@@ -62,16 +62,16 @@ def test_silence_of_the_commands_stops_the_walk_and_is_said_in_the_same_tick():
             host.send("COMMAND", **WALK)
             host.measure()
             assert not host.tick()["HEALTH"]["LIMITS"] & LIMIT_SAFE_STOP
-        told = []
+        ticks = []
         for _ in range(40):
             host.measure()
-            told.append(host.tick())
-        ages_ms = [tick["INPUTS"]["COMMAND_AGE"] for tick in told]
+            ticks.append(host.tick())
+        ages_ms = [tick["INPUTS"]["COMMAND_AGE"] for tick in ticks]
         assert ages_ms == [80 * (number + 1) for number in range(40)]
-        stale = [bool(tick["SCORES_FORCE"]["FAULTS"] & FAULT_COMMAND_STALE) for tick in told]
-        stopped = [bool(tick["HEALTH"]["LIMITS"] & LIMIT_SAFE_STOP) for tick in told]
+        stale = [bool(tick["SCORES_FORCE"]["FAULTS"] & FAULT_COMMAND_STALE) for tick in ticks]
+        stopped = [bool(tick["HEALTH"]["LIMITS"] & LIMIT_SAFE_STOP) for tick in ticks]
         assert stale == stopped == [False] * 3 + [True] * 37
-        modes = [tick["PLAN_EVENTS"]["MODE"] for tick in told]
+        modes = [tick["PLAN_EVENTS"]["MODE"] for tick in ticks]
         assert STOPPING in modes[3:] and modes[-1] == STANDING_MODE
 
 

@@ -57,16 +57,16 @@ def unseen(monkeypatch) -> None:
 
 
 def run(command: list[str], log: Path, capsys) -> tuple[int, str, str]:
-    """Beside the log; each line that is told is one that a terminal shows as it is."""
+    """Beside the log; each printed line is safe to show on a terminal."""
     capsys.readouterr()
     status = main([command[0], str(log), *command[1:]])
-    told = capsys.readouterr()
-    for line in (told.out + told.err).split("\n"):
+    printed = capsys.readouterr()
+    for line in (printed.out + printed.err).split("\n"):
         assert line.isprintable(), line
     assert status in (0, 1, 2)
     if status == 2:
-        assert (told.out, told.err.count("\n")) == ("", 1)
-    return status, told.out, told.err
+        assert (printed.out, printed.err.count("\n")) == ("", 1)
+    return status, printed.out, printed.err
 
 
 # The reader
@@ -165,8 +165,8 @@ def test_monitor_plays_no_damaged_log(short, tmp_path, capsys):
     struct.pack_into(">I", data, 24, 0x7FFFFFFF)
     (tmp_path / "log").write_bytes(data)
     assert main(["monitor", "--once", "--lcm", f"file://{tmp_path / 'log'}"]) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and "bytes of the log are no event" in told
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1 and "bytes of the log are no event" in printed
 
 
 # Text from outside
@@ -221,8 +221,8 @@ def test_names_of_files_do_not_reach_the_terminal_as_they_are(short, tmp_path, c
 def test_a_wrong_option_does_not_reach_the_terminal_as_it_is(capsys):
     with pytest.raises(SystemExit):
         main(["report", "log", f"--{EVIL}"])
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and told[:-1].isprintable()
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1 and printed[:-1].isprintable()
 
 
 # Messages that are none
@@ -241,8 +241,8 @@ def test_fields_of_a_configuration_that_is_forged(short, tmp_path, capsys, unsee
     events = list(LcmLog(short))
     log = write_log(tmp_path / "log", [*map(forged, range(100)), *events])
     for command in COMMANDS:
-        status, _, told = run(command, log, capsys)
-        assert (status, "messages on SADDLEWALK_CONFIG" in told) == (0, command in EXPORTS)
+        status, _, printed = run(command, log, capsys)
+        assert (status, "messages on SADDLEWALK_CONFIG" in printed) == (0, command in EXPORTS)
     header = (tmp_path / "log-csv" / "config.csv").read_text().splitlines()[0]
     assert 40 < header.count(",") < 1001 and header.startswith("logged_s,utime_us,")
 
@@ -250,9 +250,9 @@ def test_fields_of_a_configuration_that_is_forged(short, tmp_path, capsys, unsee
 def test_of_many_channels_a_few_are_named(short, tmp_path, capsys, unseen):
     events = [Event(1, f"C{n}", b"") for n in range(5000)]
     log = write_log(tmp_path / "log", [*LcmLog(short), *events])
-    told = run(EXPORTS[0], log, capsys)[2]
-    assert told.count("\n") == NAMES_MAX + 1
-    assert f"{5000 - NAMES_MAX} messages on further channels" in told
+    printed = run(EXPORTS[0], log, capsys)[2]
+    assert printed.count("\n") == NAMES_MAX + 1
+    assert f"{5000 - NAMES_MAX} messages on further channels" in printed
 
 
 def test_a_channel_by_another_name_is_another(short, tmp_path, capsys):
@@ -267,8 +267,8 @@ def test_a_channel_by_another_name_is_another(short, tmp_path, capsys):
 def test_gaps_of_a_rerun_are_counted_and_the_first_told(short, tmp_path, capsys):
     inputs = [e for e in LcmLog(short) if e.channel in ("SADDLEWALK_INPUT", "SADDLEWALK_CONFIG")]
     log = write_log(tmp_path / "log", [*inputs, *inputs[3:], *inputs[3:]] * 30)
-    told = run(["rerun"], log, capsys)[1]
-    assert told.count("not compared: tick") <= 20 and " further gaps" in told
+    printed = run(["rerun"], log, capsys)[1]
+    assert printed.count("not compared: tick") <= 20 and " further gaps" in printed
 
 
 def test_ticks_that_lack_channels_are_in_their_places(short):
@@ -277,10 +277,10 @@ def test_ticks_that_lack_channels_are_in_their_places(short):
     (run,) = load_session(write_log(short.with_name("lacking"), events)).runs
     for name, member in (("plan", "speed_m_s"), ("verdict", "level"), ("input", "left_age_us")):
         logged = [decode(e) for e in events if e.channel == f"SADDLEWALK_{name.upper()}"]
-        told = {message.utime_us: getattr(message, member) for message in logged}
+        values = {message.utime_us: getattr(message, member) for message in logged}
         first_us = run.utime_us[0]
-        expected = [told.get(first_us + round(1e6 * at_s), np.nan) for at_s in run.time_s]
-        assert len(told) < run.ticks
+        expected = [values.get(first_us + round(1e6 * at_s), np.nan) for at_s in run.time_s]
+        assert len(values) < run.ticks
         np.testing.assert_allclose(run.column(name, member), expected, rtol=1e-6)
 
 
@@ -404,8 +404,8 @@ MEASURED = """
 import pathlib, re, sys
 from saddlewalk.cli import main
 status = main(sys.argv[1:])
-told = pathlib.Path("/proc/self/status").read_text()  # getrusage() has the parent's peak in it
-print(int(re.search(r"VmHWM: *(\\d+) kB", told.replace("\\t", " "))[1]) // 1024, file=sys.stderr)
+process = pathlib.Path("/proc/self/status").read_text()  # getrusage() has the parent's peak in it
+print(int(re.search(r"VmHWM: *(\\d+) kB", process.replace("\\t", " "))[1]) // 1024, file=sys.stderr)
 raise SystemExit(status)
 """
 

@@ -14,10 +14,10 @@ import lcm
 import pytest
 from rich.console import Console
 
-from saddlewalk import contract, dashboard, process_words
+from saddlewalk import contract, dashboard, status_text
+from saddlewalk.banner import banner
 from saddlewalk.commands.monitor import CHANNELS, Listener
 from saddlewalk.dashboard import Heard
-from saddlewalk.letters import large
 from saddlewalk.transport.lcm_types import (
     balance_t,
     health_t,
@@ -108,9 +108,9 @@ def heard(**changed) -> Heard:
     return Heard(**messages | changed)
 
 
-def drawn(told: Heard, width: int = 120) -> str:
+def drawn(heard_: Heard, width: int = 120) -> str:
     console = Console(file=io.StringIO(), width=width)
-    console.print(dashboard.render(told))
+    console.print(dashboard.render(heard_))
     return console.file.getvalue()
 
 
@@ -181,7 +181,7 @@ def test_the_level_comes_first_and_large_and_in_words():
     text = drawn(heard())
     rows = [line.strip("│ ") for line in text.splitlines()[1:7]]
     assert rows[:4] == [
-        *(row.strip() for row in large("CAUTION").splitlines()),
+        *(row.strip() for row in banner("CAUTION").splitlines()),
         "level: caution, sideways motion departs from the expected",
     ]
     assert (
@@ -215,8 +215,8 @@ def test_a_margin_that_is_not_known_has_no_bar_and_no_driver():
 
 
 @pytest.mark.parametrize("name", contract.LEVELS)
-def test_every_level_can_be_written_large(name):
-    rows = large(name.upper()).splitlines()
+def test_every_level_can_be_written_banner(name):
+    rows = banner(name.upper()).splitlines()
     assert len(rows) == 3 and len({len(row) for row in rows}) == 1
 
 
@@ -236,7 +236,7 @@ def test_after_a_fall_no_score_is_shown():
         assert "energy: n/a" in text and "recovery: n/a" in text
         for number in ("0.62", "+0.083 m", "-4.5 J", "0.21 m of reach", "CAUTION"):
             assert number not in text
-    assert large("FELL") != "FELL"
+    assert banner("FELL") != "FELL"
     assert "█" not in drawn(heard(fallen=True)).split("S_pend")[1]
 
 
@@ -256,7 +256,7 @@ def test_an_old_level_is_not_shown():
     text = drawn(heard(silent_s=1.4))
     assert "level: unknown, no message from the firmware for 1.4 s" in text
     assert "caution" not in text.lower()
-    assert large("CAUTION").splitlines()[0] not in text
+    assert banner("CAUTION").splitlines()[0] not in text
 
 
 def test_a_level_and_a_reason_of_other_firmware_are_given_by_number():
@@ -277,9 +277,9 @@ def test_a_recovery_step_back_to_the_left_that_ends_the_walk():
     message = verdict()
     message.recovery_foot, message.recovery_stops = verdict_t.LEFT, 1
     message.recovery_landing_m = [-0.2, 0.3]
-    told = dashboard.recovery_step(message)
-    assert "left foot 0.20 m behind, 0.30 m left of the right" in told
-    assert told.endswith(", ends the walk")
+    text = dashboard.recovery_step(message)
+    assert "left foot 0.20 m behind, 0.30 m left of the right" in text
+    assert text.endswith(", ends the walk")
 
 
 def test_energies_that_are_not_known_are_not_judged():
@@ -305,29 +305,29 @@ def test_a_safe_stop_is_said_with_what_is_missing(faults, words):
 
 
 def test_what_was_refused_is_told_by_cause():
-    assert "900 frames accepted, 5 bad version, wire" in process_words.inputs(status())
+    assert "900 frames accepted, 5 bad version, wire" in status_text.inputs(status())
 
 
 def test_who_commanded_before_is_not_said_to_command_now():
     """Authority ends with the walk that nobody commands any more."""
     message = status()
     message.command_source, message.command_age_us = status_t.SOURCE_NONE, 377_548_000
-    assert process_words.inputs(message).startswith("inputs: no commands now, the last 378 s ago, ")
+    assert status_text.inputs(message).startswith("inputs: no commands now, the last 378 s ago, ")
     message.command_age_us = status_t.NEVER
-    assert process_words.inputs(message).startswith("inputs: no commands yet, ")
+    assert status_text.inputs(message).startswith("inputs: no commands yet, ")
 
 
 def test_commands_from_other_machines_are_told():
     message = status()
     message.commands_foreign = 20
-    assert "20 commands from other machines" in process_words.inputs(message)
+    assert "20 commands from other machines" in status_text.inputs(message)
 
 
 def test_a_process_without_troubles_has_none_told():
     message = status_t()
     message.can_link = message.lcm_link = status_t.LINK_UP
     message.fifo_priority, message.memory_locked = 20, 1
-    timing, inputs, transports = process_words.lines(message)
+    timing, inputs, transports = status_text.lines(message)
     assert timing.endswith("0 ticks missed, SCHED_FIFO 20, memory locked")
     assert inputs.endswith("0 frames accepted")
     assert transports == "transports: CAN by SocketCAN up, LCM up"
@@ -336,16 +336,16 @@ def test_a_process_without_troubles_has_none_told():
 def test_codes_of_other_firmware_are_given_by_number():
     message = status()
     message.command_source, message.can_link = 9, 8
-    assert "commands from 9" in process_words.inputs(message)
-    assert "UDP 8" in process_words.transports(message)
+    assert "commands from 9" in status_text.inputs(message)
+    assert "UDP 8" in status_text.transports(message)
 
 
 @pytest.mark.parametrize(
     ("kind", "names"),
     [
-        ("LINK", process_words.LINKS),
-        ("SOURCE", process_words.SOURCES),
-        ("TRANSPORT", process_words.TRANSPORTS),
+        ("LINK", status_text.LINKS),
+        ("SOURCE", status_text.SOURCES),
+        ("TRANSPORT", status_text.TRANSPORTS),
     ],
 )
 def test_names_are_those_of_the_status(kind, names):
@@ -431,8 +431,8 @@ def test_the_listener_knows_for_how_long_it_heard_nothing():
 
 def test_once_prints_one_line_of_a_log(tmp_path):
     log = lcm.EventLog(str(tmp_path / "log"), "w", overwrite=True)
-    told = heard()
-    messages = [getattr(told, kind.removesuffix("_t")) for kind in CHANNELS.values()]
+    messages = heard()
+    messages = [getattr(messages, kind.removesuffix("_t")) for kind in CHANNELS.values()]
     for channel, message in zip(CHANNELS, messages, strict=True):
         log.write_event(0, channel, message.encode())
     log.close()

@@ -133,14 +133,14 @@ def test_no_altered_byte_takes_a_c3d_reader_beyond_bounds(c3d, tmp_path):
     assert time.process_time() - started_s < 10
     assert refused > 100
     kept = kept[::4]
-    told = subprocess.run(
+    done = subprocess.run(
         [sys.executable, "-c", PARSE_EACH],
         input="\n".join(kept),
         text=True,
         check=True,
         capture_output=True,
     )
-    worst = json.loads(told.stdout)
+    worst = json.loads(done.stdout)
     assert worst["parsed"] > 100
     assert worst["seconds"] < 2
     assert worst["megabytes"] < 200

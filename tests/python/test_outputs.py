@@ -124,10 +124,10 @@ def refused(monkeypatch, capsys):
         module = importlib.import_module(f"saddlewalk.commands.{writer.command}")
         monkeypatch.setattr(module, "run", lambda args: pytest.fail("it ran"))
         assert run(writer, inputs, out) == 2
-        told = capsys.readouterr()
-        assert (told.out, told.err.count("\n")) == ("", 1)
-        assert f"{writer.option} {out}" in told.err
-        return told.err
+        printed = capsys.readouterr()
+        assert (printed.out, printed.err.count("\n")) == ("", 1)
+        assert f"{writer.option} {out}" in printed.err
+        return printed.err
 
     return check
 
@@ -288,9 +288,9 @@ def test_two_outputs_of_a_command_are_two_files(inputs, tmp_path, capsys):
     for first, second in ((one, f"{tmp_path}/../{tmp_path.name}/one"), ("-", "-"), (one, one)):
         words = ["calibrate", str(inputs["walk"]), "--out", first, "--header", second]
         assert main(words) == 2
-        told = capsys.readouterr()
-        assert (told.out, told.err.count("\n")) == ("", 1)
-        assert "is the same file as --out" in told.err
+        printed = capsys.readouterr()
+        assert (printed.out, printed.err.count("\n")) == ("", 1)
+        assert "is the same file as --out" in printed.err
     assert not Path(one).exists()
 
 
@@ -351,5 +351,5 @@ def test_a_file_that_is_replaced_keeps_its_permissions(tmp_path):
 def test_a_picture_of_no_known_format_is_refused_before_the_plan(inputs, capsys, suffix):
     words = ["plan", "--schedule", str(inputs["schedule"]), "--picture", f"x.{suffix}"]
     assert main(words) == 2
-    told = capsys.readouterr()
-    assert told.out == "" and ".png or .svg or .pdf" in told.err
+    printed = capsys.readouterr()
+    assert printed.out == "" and ".png or .svg or .pdf" in printed.err

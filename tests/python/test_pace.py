@@ -130,12 +130,12 @@ def test_a_fall_after_a_stall_of_the_computer_is_said_to_be_one(tmp_path):
         process.send_signal(signal.SIGSTOP)
         time.sleep(0.5)
         process.send_signal(signal.SIGCONT)
-        told = process.stdout.read()
+        printed = process.stdout.read()
     assert process.returncode == 1
     stalled = re.search(
         r"BAD  the wearer fell at (\S+) s, (\S+) s after this computer had stalled the wearer's "
         r"process for (\S+) s",
-        told,
+        printed,
     )
     fell_s, before_s, for_s = map(float, stalled.groups())
     assert fell_s - before_s == pytest.approx(3.1, abs=0.15) and for_s >= 0.4

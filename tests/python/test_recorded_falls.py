@@ -22,7 +22,7 @@ from saddlewalk.contract import LEVELS
 from saddlewalk.emulation import closed_loop
 from saddlewalk.emulation.wearer import Body, Wearer
 from saddlewalk.evaluation import walks
-from saddlewalk.evaluation.emulated import Witness
+from saddlewalk.evaluation.emulated import TickRecorder
 from saddlewalk.evaluation.fall_pictures import (
     draw_walk,
     title_of,
@@ -42,7 +42,7 @@ from saddlewalk.evaluation.scoring import (
     score,
     states_of,
 )
-from saddlewalk.evaluation.walks import EXACT_SENSORS, draw, judge
+from saddlewalk.evaluation.walks import EXACT_SENSORS, draw, evaluated_walk
 from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.recorded_states import STATE_COLUMNS
 from saddlewalk.verdict import reason_name
@@ -192,9 +192,9 @@ def test_walkers_have_their_own_body_unless_the_configuration_says_otherwise(fol
 def test_the_command_tells_and_draws(folder, tmp_path, capsys):
     out = tmp_path / "out"
     evaluate(folder, "--out", str(out))
-    told = " ".join(capsys.readouterr().out.split())
+    printed = " ".join(capsys.readouterr().out.split())
     for words in ("twin", "exact inputs", "sensor noise", "one tick late", "hof_xcom"):
-        assert words in told
+        assert words in printed
     assert json.loads((out / "scores.json").read_text())["twin"]["falls"] == 3
     rows = {row["name"]: row for row in table(out / "falls.csv")}
     assert list(rows) == [run.name for run in RUNS]
@@ -208,7 +208,7 @@ def test_the_command_tells_and_draws(folder, tmp_path, capsys):
     for kind, drawn in (("false-alarms", alarmed), ("misses", late)):
         names = [f"{kind}/{k + 1:02}.png" for k in range(len(drawn))]
         assert sorted(str(path.relative_to(out)) for path in out.glob(f"{kind}/*")) == names
-        assert all(f"{name} ({kinds[name]})" in told for name in drawn)
+        assert all(f"{name} ({kinds[name]})" in printed for name in drawn)
     assert alarmed
     for path in out.rglob("*.png"):
         assert path.read_bytes().startswith(b"\x89PNG")
@@ -222,7 +222,7 @@ def test_emulated_wearers_stand_beside_recorded_walkers(folder, tmp_path):
     assert found["emulated_planned"]["pushed"] == 4
     assert 0.2 < found["emulated_planned"]["calm"]["minutes"] < 0.5
     assert (tmp_path / "walks.csv").exists()
-    assert "left_out" in found["twin"]
+    assert "cross_validation" in found["twin"]
     assert (tmp_path / "reliability.png").read_bytes().startswith(b"\x89PNG")
 
 
@@ -342,11 +342,11 @@ def test_an_emulated_walk_is_scored_with_noise_without_and_late():
     config = configuration({})
     trial = replace(draw(1, 0, "planned", 63.3), impulse_n_s=60.0, direction_deg=90.0)
     noisy, exact = (walks.run(trial, config, noise) for noise in (None, EXACT_SENSORS))
-    walk = judge(trial, noisy, exact)
+    walk = evaluated_walk(trial, noisy, exact)
     assert list(walk.scores) == list(INPUTS)
     (first,), (second,), (late,) = walk.scores.values()
     assert (second.kind, second.fall_s, second.alarm_s) == ("random", *fate_of(walk))
-    assert (first.fall_s, first.alarm_s) == fate_of(judge(trial, exact, exact))
+    assert (first.fall_s, first.alarm_s) == fate_of(evaluated_walk(trial, exact, exact))
     assert late.alarm_s == pytest.approx(first.alarm_s + 0.08)
     assert first.least != second.least
 
@@ -364,7 +364,7 @@ def test_exact_sensors_see_the_state_itself():
 
 def test_the_steady_part_of_an_emulated_walk_begins_with_walking():
     config, schedule = configuration({}), schedule_of([(0.0, 0.0), (1.0, 1.0), (9.0, 0.0)], 0.1)
-    wearer, witness = Wearer(Body.of(config)), Witness(config)
+    wearer, witness = Wearer(Body.of(config)), TickRecorder(config)
     for tick in itertools.islice(closed_loop.walk(config, wearer, schedule), 175):
         witness.see(tick, wearer)
     parts = witness.parts("start_stop", math.nan, math.nan)

@@ -74,7 +74,7 @@ def test_speed_and_steps_are_those_that_were_walked(walk):
 def test_contact_is_known_wherever_the_trial_begins(phase):
     walk = Walk(phase=phase)
     wrong = analyse(walk.recording()).contact != walk.contact()
-    # An event too near an end to be told from it shifts the end's contact, and nothing else.
+    # An event too close to an end to separate from it shifts the contact at the end, nothing else.
     assert wrong.sum() <= 0.25 * walk.rate_hz
     middle = slice(int(0.2 * walk.rate_hz), -int(0.3 * walk.rate_hz))
     starts = np.abs(np.diff(walk.contact().astype(int), axis=1))[:, middle].sum()
@@ -179,11 +179,11 @@ BAD = [
 @pytest.mark.parametrize(("old", "new", "words"), BAD, ids=[words for *_, words in BAD])
 def test_a_bad_trial_is_one_line_that_says_where(trial, capsys, old, new, words):
     assert main(["replay", trial(old, new)]) == 2
-    told = capsys.readouterr()
-    assert told.out == ""
-    assert told.err.count("\n") == 1
-    assert "trial.csv" in told.err
-    assert re.search(words, told.err)
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.count("\n") == 1
+    assert "trial.csv" in printed.err
+    assert re.search(words, printed.err)
 
 
 @pytest.mark.parametrize("text", ["", ",".join(COLUMNS), ",".join(COLUMNS) + "\n0" + ",0" * 15])
@@ -270,9 +270,9 @@ def test_without_gaitkit_the_remedy_is_named(monkeypatch, capsys):
 
     monkeypatch.setattr(samples, "distribution", absent)
     assert main(["replay", "--sample", "healthy"]) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1
-    assert "make samples" in told
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1
+    assert "make samples" in printed
 
 
 if TRIALS.is_dir():

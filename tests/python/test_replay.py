@@ -188,7 +188,7 @@ def same(a: list[tuple], b: list[tuple]) -> bool:
     return np.array_equal(*values, equal_nan=True)
 
 
-def told(text: str) -> dict[str, str]:
+def parsed(text: str) -> dict[str, str]:
     """name -> value of the printed lines."""
     return {line.split()[0]: line.split()[1] for line in text.splitlines()}
 
@@ -284,7 +284,7 @@ def test_the_host_answers_as_the_core_fed_offline_with_the_same_frames(capsys, t
     recording.toe_m[0, 96] = np.nan  # tick 12
     trial.write_text(csv_text(recording))
     assert main(["replay", str(trial), "--out", str(out)]) == 0
-    printed = told(capsys.readouterr().out)
+    printed = parsed(capsys.readouterr().out)
 
     from saddlewalk.gait.recording import load_recording
     from saddlewalk.gait.replayed import report, score_row
@@ -294,7 +294,7 @@ def test_the_host_answers_as_the_core_fed_offline_with_the_same_frames(capsys, t
     states = list(states_at_ticks(read, gait.contact))
     offline = play_lockstep(OfflineFirmware(), measurements(states))
     rows = [score_row(*tick) for tick in offline]
-    assert printed == told("\n".join(report(read, gait, rows)))
+    assert printed == parsed("\n".join(report(read, gait, rows)))
     assert int(printed["ticks"]) == 51
     assert int(printed["ticks_scored"]) == 50
     assert float(printed["speed"]) == pytest.approx(1.2, rel=0.01)
@@ -333,9 +333,9 @@ def test_what_no_human_walks_is_told(capsys, tmp_path):
     path = tmp_path / "millimetres.csv"
     path.write_text(csv_text(walk.recording()))
     assert main(["replay", str(path)]) == 0
-    told = capsys.readouterr().err.splitlines()
+    printed = capsys.readouterr().err.splitlines()
     for quantity in ("walking speed 1200 m/s", "step length 650 m"):
-        assert any(f"millimetres.csv: {quantity} is not human" in line for line in told), told
+        assert any(f"millimetres.csv: {quantity} is not human" in line for line in printed), printed
 
 
 def test_a_replay_that_is_ended_ends_the_firmware(tmp_path):

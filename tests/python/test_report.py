@@ -68,13 +68,13 @@ class Page(html.parser.HTMLParser):
         else:
             self.text += data
 
-    def told(self, *header: str) -> dict[str, str]:
+    def values(self, *header: str) -> dict[str, str]:
         """A table of two columns."""
         return dict(self.tables[header])
 
     @property
     def short(self) -> dict[str, str]:
-        return self.told("what", "how much")
+        return self.values("what", "how much")
 
 
 @pytest.fixture
@@ -136,7 +136,7 @@ def page(walk, tmp_path_factory) -> Page:
 
 
 def test_the_page_is_whole_in_itself(page):
-    assert page.tags["img"] == 3 and "No fault and no limit was told." in page.text
+    assert page.tags["img"] == 3 and "No faults or limits were reported." in page.text
     assert page.addresses and all(a.startswith("data:image/png;base64,") for a in page.addresses)
     assert not page.tags.keys() & {"script", "link", "iframe", "object"}
     assert "Saddlewalk is no medical device." in page.text
@@ -155,8 +155,8 @@ def test_levels_have_the_time_that_the_log_gives_them(walk, page):
 def test_distance_and_speed_are_the_wearers(walk, page):
     truth = messages(events_of(walk), "TRUTH")
     walked_m = truth[-2].com_m[0] - truth[0].com_m[0]  # the truth after a tick is the next one's
-    told = re.fullmatch(r"(\S+) m, measured", page.short["distance of the CoM"])
-    assert float(told[1]) == pytest.approx(walked_m, abs=0.03) and walked_m > 10
+    matched = re.fullmatch(r"(\S+) m, measured", page.short["distance of the CoM"])
+    assert float(matched[1]) == pytest.approx(walked_m, abs=0.03) and walked_m > 10
     assert page.short["duration"] == f"{TICKS * TICK_S:.2f} s"
     speed = float(page.short["mean speed, over the steps"].removesuffix(" m/s"))
     assert 0.8 * 1.2 < speed < 1.02 * 1.2  # with the start
@@ -188,8 +188,8 @@ def test_steps_are_those_of_the_wearers_feet(walk, page):
 
 
 def test_variability_is_the_samples():
-    told = variability([1.0, 2.0, math.nan, 3.0])
-    assert (told.steps, told.mean, told.sd, told.cv) == (3, 2.0, 1.0, 0.5)
+    spread = variability([1.0, 2.0, math.nan, 3.0])
+    assert (spread.steps, spread.mean, spread.sd, spread.cv) == (3, 2.0, 1.0, 0.5)
     assert math.isnan(variability([1.0]).sd) and math.isnan(variability([]).mean)
 
 
@@ -259,8 +259,8 @@ def test_the_worst_alarms_of_a_long_run_are_shown_closely(walk, tmp_path, monkey
     monkeypatch.setattr(pictures, "LONG_S", 5.0)
     log = write_events(tmp_path / "log", changed(events_of(walk), "VERDICT", alarm))
     page = report(log, tmp_path / "a.html")
-    told = re.findall(r"The same closely: (\w+) from (\S+) s\.", page.text)
-    assert told == [("unstable", "3.20"), ("caution", "4.80"), ("caution", "6.40")]
+    views = re.findall(r"The same closely: (\w+) from (\S+) s\.", page.text)
+    assert views == [("unstable", "3.20"), ("caution", "4.80"), ("caution", "6.40")]
 
 
 def test_faults_late_ticks_and_refused_frames_are_told(walk, tmp_path):
@@ -278,9 +278,9 @@ def test_faults_late_ticks_and_refused_frames_are_told(walk, tmp_path):
     assert (name, numbers) == ("LEFT_STALE", ["2", "0.24", "1.60", "2.40"])
     assert words == "the left foot's measurement is too old"
     assert f"{TICKS - 1} ticks late, 4 left out" in page.short["timing, since the firmware's start"]
-    told = page.short["CAN, since the firmware's start"]
-    assert told.startswith("1234 frames accepted, refused: 7 bad CRC")
-    assert page.tags["img"] == 4 and "When each fault and limit was told." in page.text
+    text = page.short["CAN, since the firmware's start"]
+    assert text.startswith("1234 frames accepted, refused: 7 bad CRC")
+    assert page.tags["img"] == 4 and "When each fault and limit was reported." in page.text
 
 
 def test_ages_are_the_inputs(walk, tmp_path, unseen):
@@ -349,9 +349,9 @@ def test_with_scores_alone_there_still_is_a_page(walk, tmp_path):
 
 def test_configuration_and_versions_are_the_logs(walk, page):
     config = messages(events_of(walk), "CONFIG")[0]
-    told = page.told("what", "value")
-    assert told["library"] == config.library_version and told["clock"] == "lockstep"
-    values = {name: float(told[name]) for name in config.name}
+    columns = page.values("what", "value")
+    assert columns["library"] == config.library_version and columns["clock"] == "lockstep"
+    values = {name: float(columns[name]) for name in config.name}
     assert values == pytest.approx(dict(zip(config.name, config.value, strict=True)), rel=1e-6)
 
 
@@ -392,7 +392,7 @@ def test_text_of_a_log_is_text_on_the_page(walk, tmp_path, unseen):
     events = changed(events_of(walk), "CONFIG", version)
     events.append(Event(events[-1].logged_us, "A<img src=x>", b"other"))
     page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
-    assert page.told("what", "value")["library"] == evil
+    assert page.values("what", "value")["library"] == evil
     assert "1 on A<img src=x>" in page.text
     assert all(address.startswith("data:") for address in page.addresses)
 
@@ -407,9 +407,9 @@ def test_of_a_log_that_was_cut_the_rest_is_reported(walk, tmp_path, unseen, caps
 
 def refused(arguments: list[str], capsys) -> str:
     assert main(["report", *arguments]) == 2
-    told = capsys.readouterr()
-    assert (told.out, told.err.count("\n")) == ("", 1)
-    return told.err
+    printed = capsys.readouterr()
+    assert (printed.out, printed.err.count("\n")) == ("", 1)
+    return printed.err
 
 
 def test_logs_of_others_and_of_two_firmwares_at_once_are_refused(walk, tmp_path, capsys):

@@ -174,9 +174,9 @@ def test_status_tells_that_a_number_is_off(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(figures, "draw_all", lambda simulations, trials: [])
     monkeypatch.setattr(numbers, "TOE_OFF_DEG", ("9.6", "12.3", "15.5", "25.2"))
     assert main(["reproduce", "--out", str(tmp_path)]) == 1
-    told = capsys.readouterr().out
-    assert "51 of 52 numbers (28 stated in the paper, 24 as read)" in told
-    assert "off: toe-off angle 1.6 m/s" in told
+    printed = capsys.readouterr().out
+    assert "51 of 52 numbers (28 stated in the paper, 24 as read)" in printed
+    assert "off: toe-off angle 1.6 m/s" in printed
     assert "**off**" not in (page := (tmp_path / "paper.html").read_text())
     assert page.count("<strong>off</strong>") == 1
 
@@ -204,11 +204,11 @@ def test_page_tells_every_number_and_every_reading(reproduced, simulated):
     page = (reproduced / "paper.html").read_text()
     rows = re.findall(r"<tr>(.*?)</tr>", page, re.DOTALL)
     cells = [re.findall(r"<td>(.*?)</td>", row, re.DOTALL) for row in rows]
-    told = [(row[0], row[1], row[7]) for row in cells if len(row) == 8]
+    compared = [(row[0], row[1], row[7]) for row in cells if len(row) == 8]
     assert [(number.what, number.case) for number in numbers.numbers(simulated)] == [
-        row[:2] for row in told
+        row[:2] for row in compared
     ]
-    assert {row[2] for row in told} == {"same"}
+    assert {row[2] for row in compared} == {"same"}
     tags = [row[0] for row in cells if len(row) == 4 and re.fullmatch(r"E\d+", row[0])]
     assert tags == [reading.tag for reading in readings.readings()]
 

@@ -26,8 +26,8 @@ FRAMES = TICKS * 22
 def rerun(log: Path, capsys, *options: str) -> tuple[int, str, str]:
     capsys.readouterr()
     status = main(["rerun", str(log), *options])
-    told = capsys.readouterr()
-    return status, told.out, told.err
+    shown = capsys.readouterr()
+    return status, shown.out, shown.err
 
 
 def write_events(path: Path, events) -> Path:
@@ -50,10 +50,10 @@ def events_of(walk: Path) -> list:
 
 
 def test_a_log_is_equal_to_the_bit(walk, capsys):
-    status, told, _ = rerun(walk / "walk.lcmlog", capsys)
+    status, shown, _ = rerun(walk / "walk.lcmlog", capsys)
     assert status == 0
-    assert f"lockstep: 1 run, {TICKS} ticks computed again" in told
-    assert f"all {OUTPUTS} recorded outputs are equal" in told
+    assert f"lockstep: 1 run, {TICKS} ticks computed again" in shown
+    assert f"all {OUTPUTS} recorded outputs are equal" in shown
 
 
 def test_a_run_in_real_time_is_equal_too(tmp_path, capsys):
@@ -61,11 +61,11 @@ def test_a_run_in_real_time_is_equal_too(tmp_path, capsys):
     options = ["--can", private_udp(), "--lcm", own_lcm()]
     body = ["--height", "1.6", "--mass", "48.123"]
     assert main(["demo", "--duration", "2", "--out", str(tmp_path), *options, *body]) == 0
-    status, told, _ = rerun(tmp_path / "walk.lcmlog", capsys)
-    assert status == 0 and "real time: 1 run" in told
-    status, _, told = rerun(tmp_path / "walk.candump.log", capsys, *body)
-    assert (status, told.count("\n")) == (2, 1)
-    assert "rerun its LCM log, which has the ages" in told
+    status, shown, _ = rerun(tmp_path / "walk.lcmlog", capsys)
+    assert status == 0 and "real time: 1 run" in shown
+    status, _, shown = rerun(tmp_path / "walk.candump.log", capsys, *body)
+    assert (status, shown.count("\n")) == (2, 1)
+    assert "rerun its LCM log, which has the ages" in shown
 
 
 @pytest.mark.parametrize(
@@ -88,10 +88,10 @@ def test_one_flipped_bit_of_an_output_is_named(walk, tmp_path, capsys, channel, 
     data = bytearray(events[index].data)
     data[byte] ^= 1
     events[index] = Changed(events[index], bytes(data))
-    status, told, _ = rerun(write_events(tmp_path / "log", events), capsys)
+    status, shown, _ = rerun(write_events(tmp_path / "log", events), capsys)
     assert status == 1
-    assert told.splitlines()[1].startswith(f"tick 5 (0.40 s), {named}")
-    assert f"1 of {TICKS} ticks differ" in told
+    assert shown.splitlines()[1].startswith(f"tick 5 (0.40 s), {named}")
+    assert f"1 of {TICKS} ticks differ" in shown
 
 
 def test_a_flipped_bit_of_an_input_shows_in_the_outputs(walk, tmp_path, capsys):
@@ -100,9 +100,9 @@ def test_a_flipped_bit_of_an_input_shows_in_the_outputs(walk, tmp_path, capsys):
     data = bytearray(events[index].data)
     data[8 + 8 + 4 + 1 + 4 + 4 + 8 + 4 + 3] ^= 1  # the CoM's velocity along x, its last bit
     events[index] = Changed(events[index], bytes(data))
-    status, told, _ = rerun(write_events(tmp_path / "log", events), capsys)
+    status, shown, _ = rerun(write_events(tmp_path / "log", events), capsys)
     assert status == 1
-    assert "tick 40 (3.20 s), SADDLEWALK_" in told and "(0x" in told
+    assert "tick 40 (3.20 s), SADDLEWALK_" in shown and "(0x" in shown
 
 
 def test_every_field_of_an_input_is_logged_to_the_bit():
@@ -155,9 +155,9 @@ def test_every_field_of_the_configuration_is_logged_and_counts(walk, tmp_path, c
     config.value = list(config.value)
     config.value[config.name.index("body_mass_kg")] += 1
     events[0] = Changed(events[0], config.encode())
-    status, told, _ = rerun(write_events(tmp_path / "log", events), capsys)
+    status, shown, _ = rerun(write_events(tmp_path / "log", events), capsys)
     assert status == 1
-    assert "gravity_n" in told and "the configuration with tick 12 is another" in told
+    assert "gravity_n" in shown and "the configuration with tick 12 is another" in shown
 
 
 def test_a_configuration_of_another_version_is_refused(walk, tmp_path, capsys):
@@ -168,45 +168,45 @@ def test_a_configuration_of_another_version_is_refused(walk, tmp_path, capsys):
     config.library_version = "9.9.9"
     config.name = ["stride_magic", *config.name[1:]]
     events[0] = Changed(events[0], config.encode())
-    status, _, told = rerun(write_events(tmp_path / "log", events), capsys)
-    assert (status, told.count("\n")) == (2, 1)
-    assert "saddlewalk 9.9.9, and stride_magic is not a field" in told
+    status, _, shown = rerun(write_events(tmp_path / "log", events), capsys)
+    assert (status, shown.count("\n")) == (2, 1)
+    assert "saddlewalk 9.9.9, and stride_magic is not a field" in shown
 
 
 def test_a_log_from_mid_run_says_so(walk, tmp_path, capsys):
     events = events_of(walk)
-    status, _, told = rerun(write_events(tmp_path / "log", events[500:]), capsys)
-    assert (status, told.count("\n")) == (2, 1)
-    assert "the log begins in mid-run" in told and f"to {TICKS - 1} cannot be computed" in told
+    status, _, shown = rerun(write_events(tmp_path / "log", events[500:]), capsys)
+    assert (status, shown.count("\n")) == (2, 1)
+    assert "the log begins in mid-run" in shown and f"to {TICKS - 1} cannot be computed" in shown
 
 
 def test_runs_after_one_another_are_each_computed(walk, tmp_path, capsys):
     events = events_of(walk)
     log = write_events(tmp_path / "log", [*events, *events])
-    status, told, _ = rerun(log, capsys)
-    assert status == 0 and f"2 runs, {2 * TICKS} ticks" in told
+    status, shown, _ = rerun(log, capsys)
+    assert status == 0 and f"2 runs, {2 * TICKS} ticks" in shown
     log = write_events(tmp_path / "log", [*events[500:], *events])
-    status, told, _ = rerun(log, capsys)
+    status, shown, _ = rerun(log, capsys)
     assert status == 1
-    assert f"1 run, {TICKS} ticks" in told and "not compared: the log begins in mid-run" in told
+    assert f"1 run, {TICKS} ticks" in shown and "not compared: the log begins in mid-run" in shown
 
 
 def test_a_lost_input_ends_the_comparison_there(walk, tmp_path, capsys):
     events = events_of(walk)
     lost = [i for i, e in enumerate(events) if e.channel == "SADDLEWALK_INPUT"][60]
-    status, told, _ = rerun(
+    status, shown, _ = rerun(
         write_events(tmp_path / "log", events[:lost] + events[lost + 1 :]), capsys
     )
     assert status == 1
-    assert "60 ticks computed again" in told and "differ" not in told
-    assert f"tick 59 is followed by tick 61: ticks 61 to {TICKS - 1} cannot be computed" in told
+    assert "60 ticks computed again" in shown and "differ" not in shown
+    assert f"tick 59 is followed by tick 61: ticks 61 to {TICKS - 1} cannot be computed" in shown
 
 
 def test_lost_outputs_are_told_and_the_others_compared(walk, tmp_path, capsys):
     events = [e for e in events_of(walk) if e.channel != "SADDLEWALK_BOS"]
-    status, told, _ = rerun(write_events(tmp_path / "log", events), capsys)
-    assert status == 1 and f"{TICKS} ticks computed again" in told
-    assert f"SADDLEWALK_BOS of {TICKS} ticks is not in the log, the first time of tick 0" in told
+    status, shown, _ = rerun(write_events(tmp_path / "log", events), capsys)
+    assert status == 1 and f"{TICKS} ticks computed again" in shown
+    assert f"SADDLEWALK_BOS of {TICKS} ticks is not in the log, the first time of tick 0" in shown
 
 
 def test_a_log_of_before_a_channel_is_whole(walk, tmp_path, capsys):
@@ -214,27 +214,27 @@ def test_a_log_of_before_a_channel_is_whole(walk, tmp_path, capsys):
     events = events_of(walk)
     there = [i for i, event in enumerate(events) if event.channel == "SADDLEWALK_BALANCE"]
     older = [event for event in events if event.channel != "SADDLEWALK_BALANCE"]
-    status, told, _ = rerun(write_events(tmp_path / "older", older), capsys)
-    assert status == 0 and f"all {TICKS * 5} recorded outputs are equal" in told
-    assert "SADDLEWALK_BALANCE is not in the log, nor compared" in told
+    status, shown, _ = rerun(write_events(tmp_path / "older", older), capsys)
+    assert status == 0 and f"all {TICKS * 5} recorded outputs are equal" in shown
+    assert "SADDLEWALK_BALANCE is not in the log, nor compared" in shown
     del events[there[3]]
-    status, told, _ = rerun(write_events(tmp_path / "lost", events), capsys)
+    status, shown, _ = rerun(write_events(tmp_path / "lost", events), capsys)
     assert status == 1
-    assert "SADDLEWALK_BALANCE of 1 ticks is not in the log, the first time of tick 3" in told
+    assert "SADDLEWALK_BALANCE of 1 ticks is not in the log, the first time of tick 3" in shown
 
 
 def test_a_log_without_inputs_says_so(walk, tmp_path, capsys):
     events = [e for e in events_of(walk) if e.channel != "SADDLEWALK_INPUT"]
-    status, _, told = rerun(write_events(tmp_path / "log", events), capsys)
-    assert (status, told.count("\n")) == (2, 1) and "nothing came on SADDLEWALK_INPUT" in told
+    status, _, shown = rerun(write_events(tmp_path / "log", events), capsys)
+    assert (status, shown.count("\n")) == (2, 1) and "nothing came on SADDLEWALK_INPUT" in shown
 
 
 def test_a_log_that_was_cut_says_so(walk, tmp_path, capsys):
     cut = tmp_path / "cut.lcmlog"
     cut.write_bytes((walk / "walk.lcmlog").read_bytes()[:-150])
-    status, told, _ = rerun(cut, capsys)
+    status, shown, _ = rerun(cut, capsys)
     assert status == 1
-    assert "bytes of the log are no event" in told and "differ" not in told
+    assert "bytes of the log are no event" in shown and "differ" not in shown
 
 
 @pytest.mark.parametrize(
@@ -247,19 +247,22 @@ def test_a_log_that_was_cut_says_so(walk, tmp_path, capsys):
     ],
 )
 def test_what_is_no_log_is_one_line(tmp_path, capfd, content, named):
-    """LCM's own reader has words of its own, which are not told."""
+    """LCM's own reader prints messages, which are hidden."""
     file = tmp_path / "file"
     file.write_bytes(content)
-    status, out, told = rerun(file, capfd)
-    assert (status, out, told.count("\n")) == (2, "", 1)
-    assert str(file) in told and named in told
+    status, out, shown = rerun(file, capfd)
+    assert (status, out, shown.count("\n")) == (2, "", 1)
+    assert str(file) in shown and named in shown
 
 
 def test_a_missing_file_and_options_for_an_lcm_log_are_one_line(walk, tmp_path, capsys):
-    status, _, told = rerun(tmp_path / "none.lcmlog", capsys)
-    assert (status, told.count("\n")) == (2, 1) and "No such file" in told
-    status, _, told = rerun(walk / "walk.lcmlog", capsys, "--mass", "70")
-    assert (status, told.count("\n")) == (2, 1) and "--mass 70.0: an LCM log has its own" in told
+    status, _, shown = rerun(tmp_path / "none.lcmlog", capsys)
+    assert (status, shown.count("\n")) == (2, 1) and "No such file" in shown
+    status, _, shown = rerun(walk / "walk.lcmlog", capsys, "--mass", "70")
+    assert (status, shown.count("\n")) == (
+        2,
+        1,
+    ) and "--mass 70.0: an LCM log has its own" in shown
 
 
 def can_log(path: Path, frames) -> Path:
@@ -276,40 +279,42 @@ def frames_of(walk: Path) -> list[can.Message]:
 
 @pytest.mark.parametrize("suffix", [".log", ".blf", ".asc"])
 def test_a_can_log_is_equal_to_the_bit(walk, tmp_path, capsys, suffix):
-    status, told, _ = rerun(can_log(tmp_path / f"walk{suffix}", frames_of(walk)), capsys)
+    status, shown, _ = rerun(can_log(tmp_path / f"walk{suffix}", frames_of(walk)), capsys)
     assert status == 0
-    assert f"{TICKS} ticks" in told and f"all {FRAMES} recorded outputs are equal" in told
+    assert f"{TICKS} ticks" in shown and f"all {FRAMES} recorded outputs are equal" in shown
 
 
 def test_one_flipped_bit_of_a_frame_is_named(walk, tmp_path, capsys):
     frames = frames_of(walk)
     scores = [frame for frame in frames if frame.arbitration_id == 0x131][7]
     scores.data[2] ^= 1
-    status, told, _ = rerun(can_log(tmp_path / "walk.log", frames), capsys)
+    status, shown, _ = rerun(can_log(tmp_path / "walk.log", frames), capsys)
     assert status == 1
-    assert "tick 7 (0.56 s), SCORES_MARGIN MOS_COM: recorded " in told
-    assert f"1 of {TICKS} ticks differ" in told
+    assert "tick 7 (0.56 s), SCORES_MARGIN MOS_COM: recorded " in shown
+    assert f"1 of {TICKS} ticks differ" in shown
 
 
 def test_a_can_log_with_another_body_differs(walk, capsys):
-    status, told, _ = rerun(walk / "walk.candump.log", capsys, "--mass", "80")
-    assert status == 1 and "SCORES_FORCE GRAVITY" in told
+    status, shown, _ = rerun(walk / "walk.candump.log", capsys, "--mass", "80")
+    assert status == 1 and "SCORES_FORCE GRAVITY" in shown
 
 
 def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
     frames = frames_of(walk)
     log = can_log(tmp_path / "mid.log", frames[29 * 5 :])
-    status, _, told = rerun(log, capsys)
-    assert (status, told.count("\n")) == (2, 1) and "the log begins in mid-run" in told
+    status, _, shown = rerun(log, capsys)
+    assert (status, shown.count("\n")) == (2, 1) and "the log begins in mid-run" in shown
     answered = [i for i, frame in enumerate(frames) if frame.arbitration_id == 0x140]
-    status, told, _ = rerun(
+    status, shown, _ = rerun(
         can_log(tmp_path / "lost.log", frames[: answered[9] - 24] + frames[answered[9] + 1 :]),
         capsys,
     )
-    assert status == 1 and "9 ticks computed" in told and "2 sets of measurements came" in told
+    assert status == 1 and "9 ticks computed" in shown and "2 sets of measurements came" in shown
     log = can_log(tmp_path / "frame.log", frames[: answered[9] - 8] + frames[answered[9] - 7 :])
-    status, told, _ = rerun(log, capsys)
-    assert status == 1 and "RECOVERY of 1 ticks is not in the log, the first time of tick 9" in told
+    status, shown, _ = rerun(log, capsys)
+    assert (
+        status == 1 and "RECOVERY of 1 ticks is not in the log, the first time of tick 9" in shown
+    )
 
 
 def test_frames_that_the_host_refused_are_refused_again(walk, tmp_path, capsys):
@@ -327,10 +332,10 @@ def test_frames_that_the_host_refused_are_refused_again(walk, tmp_path, capsys):
         can.Message(arbitration_id=0x140, is_extended_id=False, is_remote_frame=True),
         can.Message(arbitration_id=0x140, is_extended_id=False, data=b"abc"),
     ]
-    status, told, _ = rerun(
+    status, shown, _ = rerun(
         can_log(tmp_path / "junk.log", frames[:44] + junk + frames[44:]), capsys
     )
-    assert status == 0, told
+    assert status == 0, shown
 
 
 def test_a_command_that_cannot_be_used_is_not_used_again(walk, tmp_path, capsys):
@@ -338,24 +343,24 @@ def test_a_command_that_cannot_be_used_is_not_used_again(walk, tmp_path, capsys)
     command = [frame for frame in frames if frame.arbitration_id == 0x100][90]
     command.data[2:4] = b"\x00\x80"  # the speed: not available
     command.data[0] = wire.frame_crc(0x100, command.data)
-    status, told, _ = rerun(can_log(tmp_path / "walk.log", frames), capsys)
-    assert status == 0, told
+    status, shown, _ = rerun(can_log(tmp_path / "walk.log", frames), capsys)
+    assert status == 0, shown
 
 
 def test_a_broken_can_log_says_where(walk, tmp_path, capsys):
     lines = (walk / "walk.candump.log").read_text().splitlines()
     broken = tmp_path / "broken.log"
     broken.write_text("\n".join([*lines[:1000], "(17953285 saddlewalk"]))
-    status, told, _ = rerun(broken, capsys)
-    assert status == 1 and "cannot be read on after 1000 records" in told
+    status, shown, _ = rerun(broken, capsys)
+    assert status == 1 and "cannot be read on after 1000 records" in shown
     broken.write_text("no frame\n")
-    status, _, told = rerun(broken, capsys)
-    assert (status, told.count("\n")) == (2, 1) and "holds no CAN frame" in told
+    status, _, shown = rerun(broken, capsys)
+    assert (status, shown.count("\n")) == (2, 1) and "holds no CAN frame" in shown
     other = can_log(
         tmp_path / "other.log", [can.Message(arbitration_id=0x7FF, is_extended_id=False)]
     )
-    status, _, told = rerun(other, capsys)
-    assert (status, told.count("\n")) == (2, 1) and "none of the frames COMMAND" in told
+    status, _, shown = rerun(other, capsys)
+    assert (status, shown.count("\n")) == (2, 1) and "none of the frames COMMAND" in shown
 
 
 def test_nothing_of_this_machine_is_asked(walk, tmp_path):

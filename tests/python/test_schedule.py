@@ -117,14 +117,14 @@ def test_events_alternate_and_each_foot_lands_once_a_swing(schedule, capsys):
 
 @pytest.mark.parametrize("hs_angle", ["0", "10", "25"])
 def test_event_times_do_not_depend_on_the_rows(schedule, hs_angle, capsys):
-    """One wish from the start, told by ticks of 80 ms and of 10 ms."""
+    """One speed from the start, walked with ticks of 80 ms and of 10 ms."""
     path = schedule("0,0.8\n")
-    told = [
+    walks = [
         events_of(plan(capsys, path, "--hs-angle", hs_angle, "--duration", "8", "--dt", dt))
         for dt in ("0.08", "0.01")
     ]
-    assert [name for name, _ in told[0]] == [name for name, _ in told[1]]
-    coarse_s, fine_s = ([t_s for _, t_s in events] for events in told)
+    assert [name for name, _ in walks[0]] == [name for name, _ in walks[1]]
+    coarse_s, fine_s = ([t_s for _, t_s in events] for events in walks)
     assert len(coarse_s) > 15
     assert np.abs(np.subtract(coarse_s, fine_s)).max() < EVENT_TOLERANCE_S
 

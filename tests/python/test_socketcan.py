@@ -135,9 +135,9 @@ def test_cantools_decodes_what_candump_sees():
 def test_the_demo_walks_on_vcan0_by_itself(tmp_path, capsys):
     """In lockstep: an emulated processor may be too slow for a wearer in real time."""
     assert main(["demo", "--clock=lockstep", f"--out={tmp_path}"]) == 0
-    told = capsys.readouterr().out
-    assert "CAN: socketcan channel 'vcan0'" in told
-    assert "did not fall" in told and "BAD" not in told and "stands at the end" in told
+    printed = capsys.readouterr().out
+    assert "CAN: socketcan channel 'vcan0'" in printed
+    assert "did not fall" in printed and "BAD" not in printed and "stands at the end" in printed
     with can.CanutilsLogReader(tmp_path / "walk.candump.log") as log:
         assert sum(1 for _ in log) > 20 / TICK_S * MESSAGES_PER_TICK
 

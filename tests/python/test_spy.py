@@ -57,9 +57,9 @@ def test_missing_java_is_one_line(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("SADDLEWALK_BUILD", str(tmp_path))
     monkeypatch.setenv("PATH", "")
     assert main(["spy"]) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1
-    assert "needs Java, and java is missing: as root, apt-get install -y default-jdk" in told
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1
+    assert "needs Java, and java is missing: as root, apt-get install -y default-jdk" in printed
     assert not list(tmp_path.iterdir())
 
 
@@ -67,8 +67,8 @@ def test_a_missing_display_is_one_line(build, monkeypatch, capsys):
     monkeypatch.setenv("SADDLEWALK_BUILD", str(build))
     monkeypatch.delenv("DISPLAY", raising=False)
     assert main(["spy"]) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and "saddlewalk monitor" in told
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1 and "saddlewalk monitor" in printed
 
 
 def test_lcm_spy_finds_every_type(build, tmp_path):

@@ -96,14 +96,14 @@ def test_markers_are_named_for_every_command_that_reads_a_recording(recorded, tm
 
 
 def test_replay_reads_a_laboratory_s_files(recorded, tmp_path, capsys):
-    printed = []
+    shown = []
     for kind in ("c3d", "trc", "csv"):
         assert main(["replay", recorded[kind]]) == 0
         lines = dict(line.split()[:2] for line in capsys.readouterr().out.splitlines())
         names = ("speed", "step_length", "step_width", "ticks")
-        printed.append([float(lines[name]) for name in names])
-    assert printed[0] == pytest.approx(printed[2], rel=5e-3)
-    assert printed[1] == pytest.approx(printed[2], rel=5e-3)
+        shown.append([float(lines[name]) for name in names])
+    assert shown[0] == pytest.approx(shown[2], rel=5e-3)
+    assert shown[1] == pytest.approx(shown[2], rel=5e-3)
 
 
 def test_a_plan_is_supervised_as_a_steady_walk(tmp_path, capsys):
@@ -175,8 +175,8 @@ def test_a_table_of_no_layout_is_refused_by_the_one_it_is_nearest_to(
     path = tmp_path / "table.csv"
     path.write_text(header + "\n")
     assert main(["supervise", "--in", str(path)]) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and named in told and str(path) in told
+    shown = capsys.readouterr().err
+    assert shown.count("\n") == 1 and named in shown and str(path) in shown
 
 
 @pytest.mark.parametrize("command", [["supervise", "--in"], ["replay"]])
@@ -184,5 +184,7 @@ def test_a_file_that_is_no_recording_is_one_line(command, tmp_path, capsys):
     path = tmp_path / "walk.c3d"
     path.write_bytes(b"t_s,com_x_m\n")
     assert main([*command, str(path)]) == 2
-    told = capsys.readouterr()
-    assert told.out == "" and told.err.count("\n") == 1 and "walk.c3d: not a C3D file" in told.err
+    shown = capsys.readouterr()
+    assert (
+        shown.out == "" and shown.err.count("\n") == 1 and "walk.c3d: not a C3D file" in shown.err
+    )

@@ -119,9 +119,11 @@ def test_a_turn_in_a_laboratory_s_file_is_one_line(command, tmp_path, capsys):
     walk = bent(walk_of(PERSON, 1.0, 6.0), 90)
     path = c3d_file(tmp_path / "turn.c3d", laboratory(walk, LABORATORIES["y up, walking along x"]))
     assert main([command, path]) == 2
-    told = capsys.readouterr()
-    assert told.out == "" and told.err.count("\n") == 1
-    assert "turn.c3d" in told.err and "not one steady straight walk: the way turns by 9" in told.err
+    shown = capsys.readouterr()
+    assert shown.out == "" and shown.err.count("\n") == 1
+    assert (
+        "turn.c3d" in shown.err and "not one steady straight walk: the way turns by 9" in shown.err
+    )
 
 
 LIMPING = {**PERSON, "step_length_factor_left": 1.2, "step_length_factor_right": 0.8}
@@ -146,9 +148,9 @@ def test_left_and_right_exchanged_are_said_to_be(tmp_path, capsys):
     path = tmp_path / "walk.csv"
     path.write_text(csv_text(swapped))
     assert main(["calibrate", str(path)]) == 2
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1
-    assert "walk.csv: step width -0.138 m: left and right seem swapped" in told
+    shown = capsys.readouterr().err
+    assert shown.count("\n") == 1
+    assert "walk.csv: step width -0.138 m: left and right seem swapped" in shown
 
 
 def test_a_swap_in_a_laboratory_s_file_is_said_too(tmp_path):

@@ -272,8 +272,8 @@ def test_speed_beyond_the_ceiling_is_told(capsys, tmp_path):
     source = tmp_path / "states.csv"
     source.write_text(",".join(STATE_COLUMNS) + "\n0" + "," * (len(STATE_COLUMNS) - 1) + "\n")
     assert main(["supervise", "--in", str(source), "--speed", "9"]) == 0
-    told = capsys.readouterr().err
-    assert told.count("\n") == 1 and "--speed 9" in told and "1.935 m/s" in told
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1 and "--speed 9" in printed and "1.935 m/s" in printed
     assert main(["supervise", "--in", str(source), "--speed", "1.2"]) == 0
     assert capsys.readouterr().err == ""
 

@@ -90,7 +90,7 @@ def forge(source: str) -> None:
 @in_private_network
 @pytest.mark.parametrize("source", [HERE, "127.0.0.1"])
 def test_a_forged_source_address_does_not_help(source):
-    """Even where the kernel is told to let packets in that pretend to be this machine's own."""
+    """Even where the kernel is set to accept packets with this machine's own source address."""
     with neighbour() as other, Host("--lcm", URL, COMMAND_HOLDS) as host:
         for conf in ("all", "here"):
             for name, value in (("accept_local", 1), ("rp_filter", 0), ("route_localnet", 1)):

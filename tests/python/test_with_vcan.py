@@ -34,11 +34,11 @@ def test_too_few_arguments_are_one_line(tmp_path):
 @pytest.mark.socketcan
 def test_a_kernel_that_has_vcan_serves_itself(tmp_path):
     """Where this runs there is one, if only in the guest: no second guest is booted."""
-    script = "echo told; echo complained >&2; echo written >$0/file; ip -br link; exit 7"
+    script = "echo printed; echo complained >&2; echo written >$0/file; ip -br link; exit 7"
     done = with_vcan(tmp_path, "sh", "-c", script, tmp_path)
     assert done.returncode == 7
     assert done.stdout.startswith("with-vcan: vcan of this machine's kernel, ")
-    assert "told\n" in done.stdout and "vcan1 " in done.stdout
+    assert "printed\n" in done.stdout and "vcan1 " in done.stdout
     assert done.stderr == "complained\n"
     assert (tmp_path / "file").read_text() == "written\n"
     assert not (tmp_path / "guest").exists()

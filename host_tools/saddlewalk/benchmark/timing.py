@@ -93,10 +93,10 @@ class CorePlan:
 def told_calls() -> str:
     """What saddlewalk-bench-calls tells: lines of walk, update, function, argument."""
     program = built("bin/saddlewalk-bench-calls")
-    told = subprocess.run([program], capture_output=True, text=True)
-    if told.returncode != 0:
-        raise UserError(f"{program} ended with {told.returncode}: {told.stderr[-200:].strip()}")
-    return told.stdout
+    done = subprocess.run([program], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise UserError(f"{program} ended with {done.returncode}: {done.stderr[-200:].strip()}")
+    return done.stdout
 
 
 def calls_of_plan() -> list[list[list[float]]]:

@@ -71,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
     console = Console(file=sys.stderr if "-" in (args.out, args.header) else sys.stdout)
     console.print(_walk_table(walks))
     console.print(_fit_table(fits))
-    for line in (*_not_told(walks), *_too_fast(walks, config)):
+    for line in (*_missing_quantities(walks), *_too_fast(walks, config)):
         console.print(line, markup=False, highlight=False, soft_wrap=True)
     return 0
 
@@ -109,7 +109,7 @@ def _fit_table(fits: "list[Fit]") -> Any:
     return table
 
 
-def _not_told(walks: "list[WalkMeasures]") -> list[str]:
+def _missing_quantities(walks: "list[WalkMeasures]") -> list[str]:
     return [
         f"{walk.source} does not tell the {quantity}: {reason}"
         for walk in walks

@@ -282,5 +282,5 @@ def level_times(recorder: "Recorder") -> str:
     from saddlewalk.contract import TICK_S
     from saddlewalk.verdict import ticks_in
 
-    told = ticks_in(recorder.levels).items()
-    return "level: " + ", ".join(f"{name} {ticks * TICK_S:.1f} s" for name, ticks in told)
+    ticks_by_level = ticks_in(recorder.levels).items()
+    return "level: " + ", ".join(f"{name} {ticks * TICK_S:.1f} s" for name, ticks in ticks_by_level)

@@ -12,7 +12,7 @@ from saddlewalk.outputs import add_input
 
 if TYPE_CHECKING:
     from saddlewalk.emulation.wearer import Noise, Push, Wearer
-    from saddlewalk.faults.scenario import Happening
+    from saddlewalk.faults.scenario import Occurrence
     from saddlewalk.planning.schedule import Speeds
 
 SPEED_M_S = 1.2
@@ -119,11 +119,11 @@ def run(args: argparse.Namespace) -> int:
     wearer = wearer_of(args, load_config(args), Noise().scaled(args.noise_scale))
     schedule = schedule_of(speeds_of(args, [(0.0, SPEED_M_S)]), math.radians(args.hs_angle))
     lcm = open_lcm(args.lcm)
-    happenings = _happenings(args)
+    occurrences = _occurrences(args)
     with open_bus(args.can) as bus:
         print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
         events = events_printer(wearer)
-        ways = faulty(bus, lcm, happenings, args.seed) if happenings else (bus, lcm)
+        ways = faulty(bus, lcm, occurrences, args.seed) if occurrences else (bus, lcm)
         start = "start saddlewalk-host there with the same --clock and --lcm"
         exoskeleton = Exoskeleton(
             ways[0], wearer, schedule, ways[1], [events], fresh=False, if_silent=start, key=key
@@ -133,7 +133,7 @@ def run(args: argparse.Namespace) -> int:
     return 1 if wearer.fallen else 0
 
 
-def _happenings(args: argparse.Namespace) -> "list[Happening]":
+def _occurrences(args: argparse.Namespace) -> "list[Occurrence]":
     """What --faults says shall happen, each at a time that --seed draws."""
     import numpy as np
 
@@ -144,14 +144,14 @@ def _happenings(args: argparse.Namespace) -> "list[Happening]":
     if args.clock == "lockstep":
         raise UserError("--faults: firmware in lockstep waits for what is lost: --clock realtime")
     random = np.random.default_rng(args.seed)
-    happenings = [draw(fault, random) for fault in read_scenario(args.faults).faults]
-    for happening in happenings:
-        if not happening.is_of_frames:
+    occurrences = [draw(fault, random) for fault in read_scenario(args.faults).faults]
+    for occurrence in occurrences:
+        if not occurrence.is_of_frames:
             raise UserError(
-                f"{args.faults}: {happening.kind} happens to the firmware, of which emulate only "
+                f"{args.faults}: {occurrence.kind} happens to the firmware, of which emulate only "
                 "sends the frames: try it with saddlewalk faults"
             )
-    return happenings
+    return occurrences
 
 
 def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer":

@@ -1,4 +1,4 @@
-"""`saddlewalk evaluate`: how well the supervisor announces falls, and what its claims are worth."""
+"""`saddlewalk evaluate`: how well the supervisor predicts falls, and whether its claims hold."""
 
 import argparse
 import contextlib
@@ -20,9 +20,9 @@ from saddlewalk.printable import printable
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from saddlewalk.evaluation.cross_validation import CrossValidation
     from saddlewalk.evaluation.detection import Detection
     from saddlewalk.evaluation.gait_trials import GaitTrial
-    from saddlewalk.evaluation.left_out import LeftOut
     from saddlewalk.evaluation.recorded_falls import Scored as ScoredWalk
     from saddlewalk.evaluation.scoring import Score
     from saddlewalk.evaluation.walks import Walk
@@ -99,12 +99,12 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
-    from saddlewalk.evaluation.gait_trials import judge_folder
-    from saddlewalk.evaluation.left_out import leave_one_out, table
+    from saddlewalk.evaluation.cross_validation import leave_one_out, table
+    from saddlewalk.evaluation.gait_trials import score_folder
 
     console = Console(stderr=args.json == "-")
     config = load_config(args)
-    trials = judge_folder(args.gait, config) if args.gait else []
+    trials = score_folder(args.gait, config) if args.gait else []
     parts = []
     if args.walks or not args.falls:
         parts.append(_emulate(console, args, config, trials))
@@ -112,12 +112,14 @@ def run(args: argparse.Namespace) -> int:
         parts.append(_score_falls(args))
     results = {name: figures for part in parts for name, figures in part.figures.items()}
     if trials:
-        results |= _tell_trials(console, trials)
-    _tell_side_by_side(console, results)
+        results |= _print_trials(console, trials)
+    _print_side_by_side(console, results)
     found = leave_one_out({name: each for part in parts for name, each in part.scores.items()})
     if found:
         console.print(table(found))
-    text = _json({name: {**each, **_left_out(found.get(name))} for name, each in results.items()})
+    text = _json(
+        {name: {**each, **_cross_validation(found.get(name))} for name, each in results.items()}
+    )
     if args.json:
         write_text("--json", args.json, text)
     if args.out:
@@ -126,15 +128,15 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _left_out(found: "LeftOut | None") -> dict[str, Any]:
-    return {"left_out": asdict(found)} if found else {}
+def _cross_validation(found: "CrossValidation | None") -> dict[str, Any]:
+    return {"cross_validation": asdict(found)} if found else {}
 
 
 def _emulate(
     console: "Console", args: argparse.Namespace, config: Any, trials: Sequence["GaitTrial"]
 ) -> Part:
     """Walk, and tell about the emulated wearer, by kind."""
-    from saddlewalk.evaluation.detection import detection_of, push_limits, recovery_worth
+    from saddlewalk.evaluation.detection import detection_of, push_limits, recovery_benefit
     from saddlewalk.evaluation.region import CLAIMS, POSTURES, explore, grid
     from saddlewalk.evaluation.side_by_side import walker_figures
     from saddlewalk.evaluation.walks import KINDS
@@ -144,16 +146,16 @@ def _emulate(
     walks = _walk(args, count, config)
     by_kind = {kind: [walk for walk in walks if walk.trial.kind == kind] for kind in KINDS}
     detections = {kind: detection_of(by_kind[kind]) for kind in KINDS}
-    worth, limits = recovery_worth(walks), push_limits(walks)
+    benefit, limits = recovery_benefit(walks), push_limits(walks)
     regions = [explore(posture, grid(), config) for posture in POSTURES]
     confusions = {
         region.posture.name: {claim: region.confusion(claim) for claim in CLAIMS}
         for region in regions
     }
-    _tell_detection(console, detections)
-    _tell_areas(console, detections)
-    _tell_limits(console, limits, worth)
-    _tell_confusions(console, confusions)
+    _print_detection(console, detections)
+    _print_areas(console, detections)
+    _print_limits(console, limits, benefit)
+    _print_confusions(console, confusions)
     result = {
         "seed": args.seed,
         "walks": count,
@@ -161,7 +163,7 @@ def _emulate(
             kind: {**asdict(found), "alarm_share": found.alarm_share}
             for kind, found in detections.items()
         },
-        "recovery_worth": worth,
+        "recovery_benefit": benefit,
         "push_limits_n_s": limits,
         "region": confusions,
         "gait": [asdict(trial) for trial in trials],
@@ -249,7 +251,7 @@ def _percent(share: float) -> str:
     return f"{100 * share:.1f} %" if math.isfinite(share) else "-"
 
 
-def _tell_detection(console: "Console", detections: dict[str, "Detection"]) -> None:
+def _print_detection(console: "Console", detections: dict[str, "Detection"]) -> None:
     table = _table("Falls foretold", "the wearer takes", *(f"{kind} steps" for kind in detections))
     rows = {
         "pushed walks": lambda d: f"{d.pushed}",
@@ -268,7 +270,7 @@ def _tell_detection(console: "Console", detections: dict[str, "Detection"]) -> N
     console.print(table)
 
 
-def _tell_areas(console: "Console", detections: dict[str, "Detection"]) -> None:
+def _print_areas(console: "Console", detections: dict[str, "Detection"]) -> None:
     from saddlewalk.evaluation.walks import MARGINS, WINDOWS
 
     for kind, detection in detections.items():
@@ -280,8 +282,8 @@ def _tell_areas(console: "Console", detections: dict[str, "Detection"]) -> None:
         console.print(table)
 
 
-def _tell_limits(
-    console: "Console", limits: dict[str, dict[int, float]], worth: dict[str, float]
+def _print_limits(
+    console: "Console", limits: dict[str, dict[int, float]], benefit: dict[str, float]
 ) -> None:
     from saddlewalk.evaluation.walks import DIRECTIONS, SPEED_BINS, SPEEDS_M_S
 
@@ -296,17 +298,18 @@ def _tell_limits(
             )
         console.print(table)
     console.print(
-        f"The recovery step saves {_percent(worth['recovery_alone_survives'])} of "
-        f"{worth['pushes']} pushes drawn without regard to a limit: both kinds survive "
-        f"{_percent(worth['both_survive'])}, both fall to {_percent(worth['both_fall'])}, on the "
-        f"planned steps alone {_percent(worth['planned_alone_survives'])} are survived."
+        f"Of {benefit['pushes']} uniformly random pushes, "
+        f"{_percent(benefit['both_survive'])} are survived by both kinds of wearer, "
+        f"{_percent(benefit['both_fall'])} by neither, "
+        f"{_percent(benefit['recovery_alone_survives'])} only with the recovery step, "
+        f"{_percent(benefit['planned_alone_survives'])} only with the planned steps."
     )
 
 
-def _tell_confusions(console: "Console", confusions: dict[str, dict[str, dict[str, int]]]) -> None:
+def _print_confusions(console: "Console", confusions: dict[str, dict[str, dict[str, int]]]) -> None:
     from saddlewalk.evaluation.region import CLAIMS
 
-    names = ("rightly_safe", "wrongly_safe", "cautious", "rightly_unsafe")
+    names = ("true_safe", "false_safe", "false_unsafe", "true_unsafe")
     columns = [name.replace("_", " ") for name in names]
     for posture, claims in confusions.items():
         table = _table(f"States that can be brought to rest: {posture}", "said safe if", *columns)
@@ -315,7 +318,7 @@ def _tell_confusions(console: "Console", confusions: dict[str, dict[str, dict[st
         console.print(table)
 
 
-def _tell_trials(console: "Console", trials: Sequence["GaitTrial"]) -> dict[str, Figures]:
+def _print_trials(console: "Console", trials: Sequence["GaitTrial"]) -> dict[str, Figures]:
     from saddlewalk.evaluation.side_by_side import PEOPLE, people_figures
 
     levels = list(trials[0].levels)
@@ -331,7 +334,7 @@ def _tell_trials(console: "Console", trials: Sequence["GaitTrial"]) -> dict[str,
     return {PEOPLE: people_figures(trials)}
 
 
-def _tell_side_by_side(console: "Console", results: dict[str, Figures]) -> None:
+def _print_side_by_side(console: "Console", results: dict[str, Figures]) -> None:
     from saddlewalk.evaluation.scoring import INPUTS
     from saddlewalk.evaluation.side_by_side import tables
 
@@ -341,15 +344,15 @@ def _tell_side_by_side(console: "Console", results: dict[str, Figures]) -> None:
 
 
 def _write(console: "Console", folder: Path, writers: Sequence[Writer]) -> None:
-    from saddlewalk.atomic_write import whole_folder
+    from saddlewalk.atomic_write import atomic_folder
 
-    with whole_folder("--out", folder, FILES) as new:
-        told = [line for writer in writers for line in writer(new)]
-    for line in told:
+    with atomic_folder("--out", folder, FILES) as new:
+        lines = [line for writer in writers for line in writer(new)]
+    for line in lines:
         console.print(f"  {printable(folder / line)}", markup=False)
 
 
-def _write_scores(text: str, found: dict[str, "LeftOut"], new: Path) -> Iterator[str]:
+def _write_scores(text: str, found: dict[str, "CrossValidation"], new: Path) -> Iterator[str]:
     from saddlewalk.evaluation.pictures import draw_reliability
 
     (new / "scores.json").write_text(text)
@@ -390,13 +393,13 @@ def _write_falls(by_walker: dict[str, list["ScoredWalk"]], new: Path) -> Iterato
     yield from FALLS_FILES
     for kind, worst in zip(KINDS_DRAWN, (worst_misses, worst_false_alarms), strict=True):
         (new / kind).mkdir()
-        walks = _in_turns([worst(walks) for walks in by_walker.values()])
+        walks = _interleaved([worst(walks) for walks in by_walker.values()])
         for name, walk in zip(DRAWINGS[kind], walks, strict=False):
             draw_walk(walk, new / name)
             yield f"{name}  {title_of(walk)}"
 
 
-def _in_turns(lists: Sequence[Sequence[Any]]) -> Iterator[Any]:
+def _interleaved(lists: Sequence[Sequence[Any]]) -> Iterator[Any]:
     """The first of each, then the second of each, and so on."""
     nothing = object()
     turns = itertools.chain.from_iterable(itertools.zip_longest(*lists, fillvalue=nothing))

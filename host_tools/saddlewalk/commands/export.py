@@ -45,9 +45,9 @@ def run(args: argparse.Namespace) -> int:
             f"{args.log}: none of its {log.events} messages, on {', '.join(others)}, is of "
             "a type of saddlewalk's"
         )
-    told = sys.stderr if str(args.out) == "-" else sys.stdout
+    stream = sys.stderr if str(args.out) == "-" else sys.stdout
     for path in export(log, tables, args.format, args.out):
-        print(printable(path), file=told)
+        print(printable(path), file=stream)
     remarks = [
         f"left out: {count} messages on {channel}, of no type of ours"
         for channel, count in others.items()

@@ -70,7 +70,7 @@ def run(args: argparse.Namespace) -> int:
         console.print(_table(rows_of(live), "In real time, by saddlewalk-host"))
         outcomes += live
     console.print(_summary(outcomes, args.seed))
-    return 1 if any(outcome.flaws for outcome in outcomes) else 0
+    return 1 if any(outcome.violations for outcome in outcomes) else 0
 
 
 def _in_lockstep(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["Outcome"]:
@@ -146,8 +146,8 @@ def _number(value: float) -> str:
 def _summary(outcomes: list["Outcome"], seed: int) -> str:
     from collections import Counter
 
-    unsafe = [outcome for outcome in outcomes if outcome.flaws]
-    flaws = Counter(flaw for outcome in unsafe for flaw in outcome.flaws)
-    words = ", ".join(f"{flaw} {count}" for flaw, count in flaws.items())
-    told = f": {words}" if words else ""
-    return f"{len(outcomes)} walks, seed {seed}: {len(unsafe)} with an unsafe output{told}"
+    unsafe = [outcome for outcome in outcomes if outcome.violations]
+    violations = Counter(violation for outcome in unsafe for violation in outcome.violations)
+    words = ", ".join(f"{violation} {count}" for violation, count in violations.items())
+    detail = f": {words}" if words else ""
+    return f"{len(outcomes)} walks, seed {seed}: {len(unsafe)} with an unsafe output{detail}"

@@ -10,8 +10,8 @@ from saddlewalk.options import add_recordings, number_in
 from saddlewalk.outputs import add_output
 
 if TYPE_CHECKING:
-    from saddlewalk.gait.following import Deviation
     from saddlewalk.gait.recording import Recording
+    from saddlewalk.gait.tracking_error import Deviation
     from saddlewalk.table import Cell
 
 RMS_COLUMNS = "com_y_m com_z_m com_z_shape_m swing_x_m landing_m heel_strike_s".split()
@@ -46,9 +46,9 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
-    from saddlewalk.gait.following import deviation
     from saddlewalk.gait.measures import measure
     from saddlewalk.gait.motion_capture import load_walk, read_markers
+    from saddlewalk.gait.tracking_error import deviation
     from saddlewalk.table import write_table
 
     markers = read_markers(args.markers)
@@ -62,8 +62,8 @@ def run(args: argparse.Namespace) -> int:
             rows.append(_row(recording, walk.speed_m_s, name, found))
     if args.out:
         write_table(args.out, COLUMNS, rows)
-    told = sys.stderr if args.out == "-" else sys.stdout
-    console, table = Console(file=told), _table(rows)
+    stream = sys.stderr if args.out == "-" else sys.stdout
+    console, table = Console(file=stream), _table(rows)
     if not console.is_terminal:  # a file or a pipe has no width that names would have to fold to
         console.width = table.__rich_measure__(
             console, console.options.update(max_width=WIDEST)

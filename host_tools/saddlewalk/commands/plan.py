@@ -105,9 +105,9 @@ def _plan_schedule(args: argparse.Namespace) -> int:
     from saddlewalk.planning import schedule
     from saddlewalk.planning.steady import COLUMNS
 
-    wishes = schedule.read_schedule(args.schedule)
+    changes = schedule.read_schedule(args.schedule)
     core = Core(load_config(args, args.ankle))
-    walked = list(_until_the_end(args, wishes, core))
+    walked = list(_until_the_end(args, changes, core))
     rows = (_schedule_row(core, instant) for instant in walked)
     write_table(args.out, [*COLUMNS, *EVENT_COLUMNS], rows)
     infeasible = library().SADDLE_LIMIT_SPEED
@@ -121,19 +121,19 @@ def _plan_schedule(args: argparse.Namespace) -> int:
     if args.picture is not None:
         from saddlewalk.pictures.schedule import draw_schedule
 
-        draw_schedule(args.picture, wishes, walked)
+        draw_schedule(args.picture, changes, walked)
     return 0
 
 
-def _until_the_end(args: argparse.Namespace, wishes: list[Any], core: Any) -> Iterator[Any]:
+def _until_the_end(args: argparse.Namespace, changes: list[Any], core: Any) -> Iterator[Any]:
     """The instants of the walk: for --duration, else until it stands or 5 s after the last row."""
     from saddlewalk.contract import STANDING
     from saddlewalk.planning import schedule
 
-    last = wishes[-1]
+    last = changes[-1]
     until_stand = args.duration is None and last.speed_m_s == 0
     duration_s = last.from_s + 5.0 if args.duration is None else args.duration
-    for instant in schedule.walk(core, wishes, math.radians(args.hs_angle), args.dt):
+    for instant in schedule.walk(core, changes, math.radians(args.hs_angle), args.dt):
         if not until_stand and instant.t_s > duration_s + 1e-9:
             return
         yield instant

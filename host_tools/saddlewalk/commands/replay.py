@@ -85,8 +85,8 @@ def run(args: argparse.Namespace) -> int:
                 for row, (time_s, _) in zip(rows, answers, strict=True)
             ),
         )
-    told = sys.stderr if args.out == "-" else sys.stdout
-    print("\n".join(report(recording, gait, rows)), file=told)
+    stream = sys.stderr if args.out == "-" else sys.stdout
+    print("\n".join(report(recording, gait, rows)), file=stream)
     return 0
 
 

@@ -43,7 +43,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk.atomic_write import whole_folder
+    from saddlewalk.atomic_write import atomic_folder
     from saddlewalk.paper.figures import draw_all
     from saddlewalk.paper.numbers import findings, numbers, simulate_all
     from saddlewalk.paper.page import ONLY_ORENDURFF, verdict, write_page
@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
     pictures = draw_all(simulations, trials)
     page = write_page(compared, found, simulations, pictures, trials)
     files = {PAGE: page.encode()} | {each.name: each.png for each in pictures}
-    with whole_folder("--out", args.out, (PAGE, *PICTURES)) as folder:
+    with atomic_folder("--out", args.out, (PAGE, *PICTURES)) as folder:
         for name, content in files.items():
             (folder / name).write_bytes(content)
     print(verdict(compared, found))

@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
         report = _named(args.log, rerun_can, log, load_config(args))
     if log.broken:
         report.lacks(log.broken)
-    print("\n".join(map(printable, told(report))))
+    print("\n".join(map(printable, summary(report))))
     return 0 if report.sound else 1
 
 
@@ -65,7 +65,7 @@ def _named(log: Path, compute: Any, *arguments: Any) -> "Report":
         raise UserError(f"{log}: {error}") from error
 
 
-def told(report: "Report") -> list[str]:
+def summary(report: "Report") -> list[str]:
     """The report in lines, the first difference before all that follows from it."""
     runs = "1 run" if report.runs == 1 else f"{report.runs} runs"
     lines = [f"{report.source}: {runs}, {report.ticks} ticks computed again"]

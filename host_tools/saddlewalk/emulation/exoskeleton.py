@@ -78,10 +78,12 @@ def plan_of(messages: Messages) -> Plan | None:
 
 
 def _recovery_of(messages: Messages) -> RecoveryStep | None:
-    told, level = messages["RECOVERY"], level_name(int(messages["VERDICT"]["LEVEL"]))
-    if not told["FOUND"]:
+    recovery, level = messages["RECOVERY"], level_name(int(messages["VERDICT"]["LEVEL"]))
+    if not recovery["FOUND"]:
         return None
-    return RecoveryStep(int(told["FOOT"]), complex(told["X"], told["Y"]), level != "stable")
+    return RecoveryStep(
+        int(recovery["FOOT"]), complex(recovery["X"], recovery["Y"]), level != "stable"
+    )
 
 
 class Exoskeleton:

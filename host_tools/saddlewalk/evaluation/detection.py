@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from saddlewalk.evaluation.scoring import area, known
-from saddlewalk.evaluation.walks import BEYOND_HELP_S, KINDS, MARGINS, WINDOWS, Walk
+from saddlewalk.evaluation.walks import KINDS, MARGINS, WARNING_MIN_S, WINDOWS, Walk
 from saddlewalk.verdict import level_name, reason_name
 
 
@@ -19,7 +19,7 @@ class Detection:
     pushed: int
     fallen: int
     sensitivity: float  # falls with an alarm between push and fall
-    timely: float  # falls with an alarm at least BEYOND_HELP_S before
+    timely: float  # falls with an alarm at least WARNING_MIN_S before
     false_alarms: float  # pushed walks with an alarm though the wearer stayed up
     lead_median_s: float  # from first alarm to fall
     lead_tenth_s: float  # 10th percentile
@@ -50,7 +50,7 @@ def detection_of(walks: Iterable[Walk]) -> Detection:
         pushed=len(pushed),
         fallen=len(fallen),
         sensitivity=_share(len(leads_s), len(fallen)),
-        timely=_share(int((leads_s >= BEYOND_HELP_S).sum()), len(fallen)),
+        timely=_share(int((leads_s >= WARNING_MIN_S).sum()), len(fallen)),
         false_alarms=_share(sum(math.isfinite(walk.alarm_at_s) for walk in upright), len(upright)),
         lead_median_s=float(np.median(leads_s)) if len(leads_s) else math.nan,
         lead_tenth_s=float(np.percentile(leads_s, 10)) if len(leads_s) else math.nan,
@@ -65,7 +65,7 @@ def detection_of(walks: Iterable[Walk]) -> Detection:
     )
 
 
-def recovery_worth(walks: Iterable[Walk]) -> dict[str, float]:
+def recovery_benefit(walks: Iterable[Walk]) -> dict[str, float]:
     """What the recovery step is worth: the same pushes, drawn without regard to any limit."""
     fell: dict[int, dict[str, bool]] = {}
     for walk in walks:

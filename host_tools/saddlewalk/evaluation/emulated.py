@@ -13,7 +13,7 @@ from saddlewalk.recorded_states import score_row
 from saddlewalk.table import Cell
 
 
-class Witness:
+class TickRecorder:
     """Sees every tick of a walk, and what the supervisor that leads the wearer says."""
 
     def __init__(self, config: Any) -> None:

@@ -96,7 +96,7 @@ def worst_false_alarms(walks: Sequence[Scored]) -> list[Scored]:
 
 def draw_walk(scored: Scored, path: Path) -> None:
     """About the push: from above, height, margins, and each tick's level with its reason."""
-    walk, said = scored.walk, scored.exact
+    walk, announced = scored.walk, scored.exact
     t_s = walk.states.t_s
     end_s = min(walk.push_s + AFTER_S, walk.fall_s + FALLEN_S if walk.fell else np.inf)
     shown = np.flatnonzero((t_s >= walk.push_s - BEFORE_S) & (t_s <= end_s))
@@ -108,15 +108,15 @@ def draw_walk(scored: Scored, path: Path) -> None:
     height.axhline(FALL_HEIGHT * walk.pendulum_m, color="0.4", ls=":", lw=1)
     height.set(ylabel="height of\nthe CoM (m)")
     for name, style in MARGIN_STYLES.items():
-        if name in said.margins:
+        if name in announced.margins:
             line = {"label": name, "marker": "."} | style
-            margins.plot(t_s[shown], said.margins[name][shown], **line)
+            margins.plot(t_s[shown], announced.margins[name][shown], **line)
     margins.axhline(0, color="0.4", lw=0.8)
     margins.set(ylabel="margins (m)")
     margins.set_ylim(bottom=max(margins.get_ylim()[0], MARGIN_SHOWN_M))
     margins.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    draw_level(level, {"t_s": t_s[shown], "level": said.level[shown]})
-    _name_reasons(level, t_s[shown], said.level[shown], said.reason[shown])
+    draw_level(level, {"t_s": t_s[shown], "level": announced.level[shown]})
+    _name_reasons(level, t_s[shown], announced.level[shown], announced.reason[shown])
     level.set(xlabel="time (s)")
     for axes in (height, margins, level):
         axes.set_xlim(t_s[shown[0]], t_s[shown[-1]])

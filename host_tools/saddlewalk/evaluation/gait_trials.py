@@ -35,7 +35,7 @@ class GaitTrial:
     level_after_s: float  # from its begin to the first level that is known; inf: never
 
 
-def judge_folder(folder: Path, config: Any) -> list[GaitTrial]:
+def score_folder(folder: Path, config: Any) -> list[GaitTrial]:
     """Every CSV of a folder, each with the body of its manifest or else that of config.
 
     Raises UserError if there is none, or one cannot be read.
@@ -44,10 +44,10 @@ def judge_folder(folder: Path, config: Any) -> list[GaitTrial]:
     paths = sorted(path for path in folder.glob("*.csv") if path.name != MANIFEST)
     if not paths:
         raise UserError(f"--gait {folder}: no trials: give a folder with CSV files")
-    return [judge(path, _with_body(config, bodies.get(path.name, {}))) for path in paths]
+    return [score_trial(path, _with_body(config, bodies.get(path.name, {}))) for path in paths]
 
 
-def judge(path: Path, config: Any) -> GaitTrial:
+def score_trial(path: Path, config: Any) -> GaitTrial:
     recording = load_recording(str(path))
     gait = analyse(recording)
     core, ticks = Core(config), []
@@ -55,8 +55,8 @@ def judge(path: Path, config: Any) -> GaitTrial:
         verdict = core.tick(round(time_s * 1e6), Command(), _measurement(messages)).verdict
         ticks.append((time_s, verdict.level, verdict.reason))
     from_s, to_s = _walking(recording, gait)
-    walking = [said for time_s, *said in ticks if from_s <= time_s <= to_s]
-    settled = [said for time_s, *said in ticks if time_s > FIRST_S]
+    walking = [announced for time_s, *announced in ticks if from_s <= time_s <= to_s]
+    settled = [announced for time_s, *announced in ticks if time_s > FIRST_S]
     stable, unknown = library().SADDLE_LEVEL_STABLE, library().SADDLE_LEVEL_UNKNOWN
     return GaitTrial(
         name=path.stem,

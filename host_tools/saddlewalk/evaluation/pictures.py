@@ -10,8 +10,8 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from saddlewalk.evaluation.cross_validation import CrossValidation
 from saddlewalk.evaluation.detection import evidence
-from saddlewalk.evaluation.left_out import LeftOut
 from saddlewalk.evaluation.region import CLAIMS, EXTENT, POSTURES, explore, plane
 from saddlewalk.evaluation.scoring import roc
 from saddlewalk.evaluation.walks import KINDS, MARGINS, WINDOWS, Walk
@@ -33,7 +33,7 @@ VERDICTS = (
 
 
 def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
-    """Evidence until BEYOND_HELP_S before a fall, and of the first SOON_S, for each kind."""
+    """Evidence until WARNING_MIN_S before a fall, and of the first SOON_S, for each kind."""
     windows = WINDOWS[1:]
     figure = Figure(figsize=(13, 12), dpi=110, layout="constrained")
     for row, kind in zip(figure.subplots(len(KINDS), len(windows)), KINDS, strict=True):
@@ -54,16 +54,18 @@ def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
     figure.savefig(path)
 
 
-def draw_reliability(found: Mapping[str, LeftOut], path: Path) -> None:
+def draw_reliability(found: Mapping[str, CrossValidation], path: Path) -> None:
     """What came true against what was said, of each walker by what the others taught."""
     figure = Figure(figsize=(6, 6), dpi=110, layout="constrained")
     axes = figure.subplots()
     axes.plot([0, 1], [0, 1], color="0.8", lw=0.8)
     for index, (name, each) in enumerate(found.items()):
-        said, true, ticks = zip(*each.reliability, strict=True)
-        axes.plot(said, true, "-", color=COLOURS[index % 8], lw=0.8)
+        predicted, observed, ticks = zip(*each.reliability, strict=True)
+        axes.plot(predicted, observed, "-", color=COLOURS[index % 8], lw=0.8)
         sizes = 8 * np.log2(np.array(ticks))
-        axes.scatter(said, true, s=sizes, color=COLOURS[index % 8], label=name.replace("_", " "))
+        axes.scatter(
+            predicted, observed, s=sizes, color=COLOURS[index % 8], label=name.replace("_", " ")
+        )
     axes.set(
         title="Falls within a second, by what the other walkers taught",
         xlabel="said by the margin",

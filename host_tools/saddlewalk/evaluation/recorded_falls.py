@@ -218,8 +218,8 @@ def _score(walk: Walk, image: bytes, seed: int) -> Scored:
     random = np.random.default_rng([seed, zlib.crc32(walk.name.encode())])
     exact = supervise(walk, walk.states, config)
     noisy = supervise(walk, _with_noise(walk.states, random), config)
-    said = {"exact": exact, "noise": noisy, "one_tick_late": one_tick_late(exact)}
-    return Scored(walk, exact, {name: score(walk, each) for name, each in said.items()})
+    inputs = {"exact": exact, "noise": noisy, "one_tick_late": one_tick_late(exact)}
+    return Scored(walk, exact, {name: score(walk, each) for name, each in inputs.items()})
 
 
 def supervise(walk: Walk, seen: States, config: Any) -> Announced:

@@ -60,18 +60,18 @@ class Region:
     claims: dict[str, np.ndarray]  # by the keys of CLAIMS, what the core says
 
     def confusion(self, claim: str) -> dict[str, int]:
-        """States by what is claimed and what is true; `wrongly_safe` breaks the paper's claim.
+        """States by what is claimed and what is true; `false_safe` breaks the paper's claim.
 
-        `wrongly_safe_by_work`: of those, the ones that stop with more ankle work than W_max.
+        `false_safe_by_work`: of those, the ones that stop with more ankle work than W_max.
         """
-        said, truth = self.claims[claim], self.stops_within_work
+        claimed, truth = self.claims[claim], self.stops_within_work
         strained = self.stops & ~truth
         return {
-            "rightly_safe": int((said & truth).sum()),
-            "wrongly_safe": int((said & ~truth).sum()),
-            "wrongly_safe_by_work": int((said & strained).sum()),
-            "cautious": int((~said & truth).sum()),
-            "rightly_unsafe": int((~said & ~truth).sum()),
+            "true_safe": int((claimed & truth).sum()),
+            "false_safe": int((claimed & ~truth).sum()),
+            "false_safe_by_work": int((claimed & strained).sum()),
+            "false_unsafe": int((~claimed & truth).sum()),
+            "true_unsafe": int((~claimed & ~truth).sum()),
         }
 
 
@@ -164,12 +164,12 @@ def _claims(posture: Posture, states: np.ndarray, config: Any) -> dict[str, np.n
     seen.known = core.SADDLE_KNOWN_FEET | core.SADDLE_KNOWN_VELOCITY
     for cop, (x_m, y_m) in zip(seen.cop_m, posture.cop_m, strict=True):
         cop.x, cop.y = x_m, y_m
-    said = {claim: np.zeros(len(states), dtype=bool) for claim in CLAIMS}
+    claimed = {claim: np.zeros(len(states), dtype=bool) for claim in CLAIMS}
     for index, (x_m, y_m, vx_m_s, vy_m_s) in enumerate(states.tolist()):
         seen.com_m.x, seen.com_m.y = x_m, y_m
         seen.com_velocity_m_s.x, seen.com_velocity_m_s.y = vx_m_s, vy_m_s
         core.saddle_score_posture(model, seen, scores)
-        said["bos"][index] = scores.mos_com_m >= 0
-        said["can_stop"][index] = scores.can_stop
-        said["stays"][index] = scores.can_stop and scores.mos_xcom_m >= config.stop_margin_m
-    return said
+        claimed["bos"][index] = scores.mos_com_m >= 0
+        claimed["can_stop"][index] = scores.can_stop
+        claimed["stays"][index] = scores.can_stop and scores.mos_xcom_m >= config.stop_margin_m
+    return claimed

@@ -188,24 +188,24 @@ def announced(walk: Walk, rows: Sequence[Sequence[Cell]], seen: States) -> Annou
     return Announced(level, reason, margins)
 
 
-def one_tick_late(said: Announced) -> Announced:
+def one_tick_late(announced: Announced) -> Announced:
     """The same if every measurement came a tick later; at the first tick there is none."""
 
     def delayed(values: np.ndarray, first: float) -> np.ndarray:
         return np.concatenate([[first], values[:-1]]).astype(values.dtype)
 
     return Announced(
-        delayed(said.level, UNKNOWN),
-        delayed(said.reason, REASONS.index("input")),
-        {name: delayed(values, math.nan) for name, values in said.margins.items()},
+        delayed(announced.level, UNKNOWN),
+        delayed(announced.reason, REASONS.index("input")),
+        {name: delayed(values, math.nan) for name, values in announced.margins.items()},
     )
 
 
-def score(walk: Walk, said: Announced) -> Score:
+def score(walk: Walk, announced: Announced) -> Score:
     t_s = walk.states.t_s
     after = t_s >= walk.push_s
     exposed = after & (t_s < walk.fall_s) if walk.fell else after
-    alarms_s = t_s[exposed & (said.level == UNSTABLE)]
+    alarms_s = t_s[exposed & (announced.level == UNSTABLE)]
     alarm_s = float(alarms_s[0]) if len(alarms_s) else math.nan
     before = np.flatnonzero(t_s < walk.push_s)
     out_m = hull_margin_m(walk.xcom_m(walk.states), walk.states.feet_m, walk.half_sole_m)
@@ -215,17 +215,17 @@ def score(walk: Walk, said: Announced) -> Score:
     return Score(
         **{field: getattr(walk, field) for field in "name kind push_s fall_s ground_s".split()},
         alarm_s=alarm_s,
-        alarm_at_push=bool(len(before)) and bool(said.level[before[-1]] == UNSTABLE),
-        least={window: _least(walk, said, longest_s) for window, longest_s in WINDOWS.items()},
-        levels=_levels_at(said, settled),
-        exposed=_levels_at(said, exposed),
-        course=np.column_stack([t_s - walk.push_s, said.margins["margin"]])[exposed],
+        alarm_at_push=bool(len(before)) and bool(announced.level[before[-1]] == UNSTABLE),
+        least={window: _least(walk, announced, longest_s) for window, longest_s in WINDOWS.items()},
+        levels=_levels_at(announced, settled),
+        exposed=_levels_at(announced, exposed),
+        course=np.column_stack([t_s - walk.push_s, announced.margins["margin"]])[exposed],
         stumble=_stumble(walk, out_m, usual, alarm_s) if stumbled else None,
         out_before_push=bool(out_m[usual].min(initial=math.inf) < -STUMBLE_M),
     )
 
 
-def _least(walk: Walk, said: Announced, longest_s: float) -> dict[str, float]:
+def _least(walk: Walk, announced: Announced, longest_s: float) -> dict[str, float]:
     end_s = walk.push_s + longest_s
     if walk.fell:
         end_s = min(end_s, walk.fall_s - TIMELY_S)
@@ -233,7 +233,7 @@ def _least(walk: Walk, said: Announced, longest_s: float) -> dict[str, float]:
     evidence = (t_s >= walk.push_s) & (t_s < end_s - ROUNDING_S)
     return {
         name: float(np.fmin.reduce(values[evidence], initial=np.nan))
-        for name, values in said.margins.items()
+        for name, values in announced.margins.items()
     }
 
 
@@ -253,14 +253,14 @@ def _stumble(walk: Walk, out_m: np.ndarray, usual: np.ndarray, alarm_s: float) -
     )
 
 
-def _levels_at(said: Announced, there: np.ndarray) -> Levels:
-    return levels_in(np.column_stack([said.level, said.reason])[there].tolist())
+def _levels_at(announced: Announced, there: np.ndarray) -> Levels:
+    return levels_in(np.column_stack([announced.level, announced.reason])[there].tolist())
 
 
-def levels_in(said: Iterable[Iterable[int]]) -> Levels:
-    """How many ticks had each level, by their reasons; said: number of the level, of the reason."""
+def levels_in(announced: Iterable[Iterable[int]]) -> Levels:
+    """How many ticks had each level, by their reasons; announced: numbers of level and reason."""
     levels: Levels = {name: {} for name in LEVELS}
-    for (level, reason), ticks in Counter(map(tuple, said)).most_common():
+    for (level, reason), ticks in Counter(map(tuple, announced)).most_common():
         levels[level_name(level)][reason_name(reason)] = ticks
     return levels
 

@@ -48,17 +48,17 @@ def tables(results: Mapping[str, Figures], inputs: str) -> list[Table]:
         for name, result in results.items()
         if inputs == "exact" or inputs in result
     }
-    said = _table(f"Falls announced, {TITLES[inputs]}", shown)
+    announced = _table(f"Falls announced, {TITLES[inputs]}", shown)
     for label, cell in ROWS if inputs == "exact" else ROWS[:BRIEF]:
         cells = [_cell(cell, result) for result in shown.values()]
         if any(text != "-" for text in cells):
-            said.add_row(label, *cells)
+            announced.add_row(label, *cells)
     pushed = {name: result for name, result in shown.items() if result.get("pushed")}
     areas = _table("Area under the ROC: to 0.24 s before the fall; first 0.4 s", pushed)
     for name in MARGINS:
         found = ([result[key][name] for key in WINDOWS] for result in pushed.values())
         areas.add_row(name, *("; ".join(map(_area, pair)) for pair in found))
-    return [said, areas] if pushed else [said]
+    return [announced, areas] if pushed else [announced]
 
 
 def _table(title: str, shown: Mapping[str, Figures]) -> Table:

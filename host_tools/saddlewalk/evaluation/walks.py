@@ -21,7 +21,7 @@ from saddlewalk.emulation import closed_loop
 from saddlewalk.emulation.wearer import Body, Noise, Push, Wearer
 from saddlewalk.evaluation import scoring
 from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_margin_m
-from saddlewalk.evaluation.emulated import Witness
+from saddlewalk.evaluation.emulated import TickRecorder
 from saddlewalk.evaluation.scoring import Announced, Score, one_tick_late, score
 from saddlewalk.planning.schedule import schedule_of
 
@@ -42,7 +42,7 @@ STAIR, FINE_STAIR = 1.5, 1.15  # until the first turn, and from then on
 PUSH_FROM_S, PUSH_TO_S = 6.0, 8.0  # after several steady strides; longer than a stride
 OBSERVED_S = 6.0  # after a push
 EVIDENCE_S = 3.0  # margins are searched for this long after a push, or until the fall
-BEYOND_HELP_S = 3 * TICK_S  # before a fall the CoM itself gives it away
+WARNING_MIN_S = 3 * TICK_S  # before a fall the CoM itself gives it away
 SOON_S = 5 * TICK_S  # evidence to warn by, from the beginning of the push
 WINDOWS = ("to the fall", "to 0.24 s before", "first 0.4 s")
 HEEL_STRIKE_RAD = math.radians(10)
@@ -172,7 +172,7 @@ def _work(seed: int, chain: list[int], kind: str, image: bytes) -> list[Walk]:
     config = ffi().new("saddle_config_t *")
     ffi().memmove(config, image, len(image))
     return [
-        judge(trial, course, run(trial, config, EXACT_SENSORS))
+        evaluated_walk(trial, course, run(trial, config, EXACT_SENSORS))
         for trial, course in _walk_chain(seed, chain, kind, config)
     ]
 
@@ -192,7 +192,7 @@ def run(trial: Trial, config: Any, noise: Noise | None = None) -> Course:
     speeds = [(0.0, 0.0), (START_S, trial.speed_m_s), *stop]
     schedule = schedule_of(speeds, HEEL_STRIKE_RAD)
     end_s = trial.push_time_s + OBSERVED_S if pushed else CALM_S
-    rows, witness = [], Witness(config)
+    rows, witness = [], TickRecorder(config)
     for tick in closed_loop.walk(config, wearer, schedule):
         if tick.time_s >= end_s or wearer.fallen:
             break
@@ -259,14 +259,14 @@ def _add_baselines(ticks: np.ndarray, config: Any) -> None:
     ticks["hof_xcom_m"] = hof_margin_m(xcom_m, cop_m, contact, half_m)
 
 
-def judge(trial: Trial, course: Course, exact: Course) -> Walk:
+def evaluated_walk(trial: Trial, course: Course, exact: Course) -> Walk:
     """What a walk tells, and the same walk with exact sensors."""
     ticks, fell_at_s = course.ticks, course.fell_at_s
     time_s, level = ticks["time_s"], ticks["level"]
     pushed = np.full(len(ticks), trial.impulse_n_s > 0) & (time_s >= trial.push_time_s)
     alarms = time_s[pushed & (level == library().SADDLE_LEVEL_UNSTABLE)]
     seen = pushed & (time_s < trial.push_time_s + EVIDENCE_S)
-    early = seen & ~(time_s >= fell_at_s - BEYOND_HELP_S)
+    early = seen & ~(time_s >= fell_at_s - WARNING_MIN_S)
     soon = early & (time_s < trial.push_time_s + SOON_S)
     walking, moving = ~pushed & (ticks["mode"] == WALKING), ~pushed & (ticks["mode"] != STANDING)
     return Walk(
@@ -283,7 +283,9 @@ def judge(trial: Trial, course: Course, exact: Course) -> Walk:
         scores={
             "exact": [score(*part) for part in exact.parts],
             "noise": [score(*part) for part in course.parts],
-            "one_tick_late": [score(walk, one_tick_late(said)) for walk, said in exact.parts],
+            "one_tick_late": [
+                score(walk, one_tick_late(announced)) for walk, announced in exact.parts
+            ],
         },
     )
 

@@ -19,8 +19,8 @@ from saddlewalk.contract import OUTPUT_FRAMES, STANDING, TICK_S
 from saddlewalk.emulation.closed_loop import STEPS_A_TICK
 from saddlewalk.emulation.exoskeleton import plan_of
 from saddlewalk.emulation.wearer import Body, Wearer
-from saddlewalk.faults.judge import STATES, Judge
-from saddlewalk.faults.scenario import MEASURED, Fault, Happening, Line, Scenario, draw
+from saddlewalk.faults.checker import STATES, Checker
+from saddlewalk.faults.scenario import MEASURED, Fault, Line, Occurrence, Scenario, draw
 from saddlewalk.firmware import config_of, ffi, library
 from saddlewalk.ticks import Messages, TickReader
 from saddlewalk.transport import wire
@@ -37,7 +37,7 @@ class Outcome:
     live: bool
     detected: int | None  # the tick in which the firmware said that something is amiss
     state: str  # of STATES
-    flaws: tuple[str, ...]  # none: safe
+    violations: tuple[str, ...]  # none: safe
     blind: int  # ticks with a level for data that are older than the limit, as only we know
     forged: int  # frames of others that were taken for good
     fell: bool
@@ -72,18 +72,18 @@ class Device:
         """One tick, as it is told on CAN."""
         lib, output = library(), self._output
         lib.saddle_tick(self._context, lib.saddle_inbox_read(self._inbox, time_us), output)
-        self._tell_health()
+        self._publish_health()
         lib.saddle_wire_encode_output(output, self._health, self._ticks % 16, self._frames)
         self._ticks += 1
         if output.faults & lib.SADDLE_FAULT_COMMAND_STALE and output.plan.mode == STANDING:
             lib.saddle_inbox_release(self._inbox)
         messages = None
         for frame in self._frames:
-            told = can.Message(arbitration_id=frame.id, is_extended_id=False, data=frame.data)
-            messages = self._reader.feed(told)
+            message = can.Message(arbitration_id=frame.id, is_extended_id=False, data=frame.data)
+            messages = self._reader.feed(message)
         return messages
 
-    def _tell_health(self) -> None:
+    def _publish_health(self) -> None:
         health, inbox, receiver = self._health, self._inbox, self._inbox.receiver
         measured = inbox.input.measurement
         health.rejected_frames = library().saddle_inbox_rejected(inbox)
@@ -104,30 +104,30 @@ def run(
     """Walk `number` with the scenario's fault `index`, in lockstep; all that was told, too."""
     random = np.random.default_rng([seed, index, number])
     fault = scenario.faults[index]
-    happening = draw(fault, random)
-    line = Line([happening], random)
+    occurrence = draw(fault, random)
+    line = Line([occurrence], random)
     asked = Asked(float(random.uniform(*scenario.speed_m_s)))
     wearer = Wearer(Body.of(config), seed=int(random.integers(2**32)))
     device, sender = Device(config), wire.Sender()
-    judge = Judge(config, core.body_of(config), happening.begin_s)
-    told = []
+    checker = Checker(config, core.body_of(config), occurrence.begin_s)
+    history = []
     for tick in range(round(scenario.duration_s / TICK_S)):
         walk_s = tick * TICK_S
         for name, signals in (asked.signals, *measured_signals(wearer)):
             line.send(sender.frame(name, **signals), walk_s)
-        if not _stalled(happening, walk_s):
+        if not _stalled(occurrence, walk_s):
             for arrival in line.due(walk_s):
-                came_s = _clock_s(happening, arrival.time_s)
+                came_s = _clock_s(occurrence, arrival.time_s)
                 if device.take(arrival.frame, round(came_s * 1e6)):
-                    judge.arrived(arrival, came_s)
-            clock_s = _clock_s(happening, walk_s)
-            told.append(device.tick(round(clock_s * 1e6)))
-            judge.begin_s = max(happening.begin_s, _onset_s(happening, line))
-            judge.tick(told[-1], walk_s, clock_s)
-            wearer.follow(plan_of(told[-1]))
+                    checker.arrived(arrival, came_s)
+            clock_s = _clock_s(occurrence, walk_s)
+            history.append(device.tick(round(clock_s * 1e6)))
+            checker.begin_s = max(occurrence.begin_s, _onset_s(occurrence, line))
+            checker.tick(history[-1], walk_s, clock_s)
+            wearer.follow(plan_of(history[-1]))
         for _ in range(STEPS_A_TICK):
             wearer.step()
-    return outcome_of(fault, False, judge, wearer), told
+    return outcome_of(fault, False, checker, wearer), history
 
 
 @dataclass(frozen=True)
@@ -154,31 +154,31 @@ def measured_signals(wearer: Wearer) -> list[tuple[str, dict[str, float]]]:
     return [("MEASURED_COM", com), *feet]
 
 
-def _stalled(happening: Happening, walk_s: float) -> bool:
-    stalls = happening.kind == "stall"
-    return stalls and happening.begin_s <= walk_s < happening.begin_s + happening.strength
+def _stalled(occurrence: Occurrence, walk_s: float) -> bool:
+    stalls = occurrence.kind == "stall"
+    return stalls and occurrence.begin_s <= walk_s < occurrence.begin_s + occurrence.strength
 
 
-def _clock_s(happening: Happening, walk_s: float) -> float:
+def _clock_s(occurrence: Occurrence, walk_s: float) -> float:
     """The firmware's clock."""
-    jumped = happening.kind == "clock" and walk_s >= happening.begin_s
-    return CLOCK_BEGIN_S + walk_s + (happening.strength if jumped else 0.0)
+    jumped = occurrence.kind == "clock" and walk_s >= occurrence.begin_s
+    return CLOCK_BEGIN_S + walk_s + (occurrence.strength if jumped else 0.0)
 
 
-def _onset_s(happening: Happening, line: Line) -> float:
+def _onset_s(occurrence: Occurrence, line: Line) -> float:
     """When the fault first did something."""
-    return line.onset_s if happening.is_of_frames and happening.kind != "none" else 0.0
+    return line.onset_s if occurrence.is_of_frames and occurrence.kind != "none" else 0.0
 
 
-def outcome_of(fault: Fault, live: bool, judge: Judge, wearer: Wearer) -> Outcome:
+def outcome_of(fault: Fault, live: bool, checker: Checker, wearer: Wearer) -> Outcome:
     return Outcome(
         fault=fault,
         live=live,
-        detected=judge.detected,
-        state=judge.state,
-        flaws=tuple(sorted(judge.flaws)),
-        blind=judge.blind,
-        forged=judge.forged,
+        detected=checker.detected,
+        state=checker.state,
+        violations=tuple(sorted(checker.violations)),
+        blind=checker.blind,
+        forged=checker.forged,
         fell=wearer.fallen,
     )
 
@@ -226,8 +226,8 @@ class Row:
     median_ticks: float  # to detection; NaN: none was detected
     max_ticks: float
     states: dict[str, int]  # of STATES, those reached
-    unsafe: int  # walks with a flaw
-    flaws: dict[str, int]
+    unsafe: int  # walks with a violation
+    violations: dict[str, int]
     blind: int  # ticks, the most of a walk
     forged: int
     fell: int
@@ -252,8 +252,10 @@ def _row(fault: Fault, live: bool, outcomes: list[Outcome]) -> Row:
         median_ticks=float(np.median(ticks)) if ticks else math.nan,
         max_ticks=float(max(ticks, default=math.nan)),
         states={state: states[state] for state in STATES if states[state]},
-        unsafe=sum(bool(outcome.flaws) for outcome in outcomes),
-        flaws=dict(Counter(flaw for outcome in outcomes for flaw in outcome.flaws)),
+        unsafe=sum(bool(outcome.violations) for outcome in outcomes),
+        violations=dict(
+            Counter(violation for outcome in outcomes for violation in outcome.violations)
+        ),
         blind=max(outcome.blind for outcome in outcomes),
         forged=sum(outcome.forged for outcome in outcomes),
         fell=sum(outcome.fell for outcome in outcomes),

@@ -19,8 +19,8 @@ from saddlewalk.emulation.exoskeleton import Exoskeleton, Observer, Tick
 from saddlewalk.emulation.host import running_host
 from saddlewalk.emulation.wearer import Body, Wearer
 from saddlewalk.faults.campaign import HEEL_STRIKE_RAD, Outcome, outcome_of
-from saddlewalk.faults.judge import Judge
-from saddlewalk.faults.scenario import MEASURED, MESSAGES, Happening, Line, Scenario, draw
+from saddlewalk.faults.checker import Checker
+from saddlewalk.faults.scenario import MEASURED, MESSAGES, Line, Occurrence, Scenario, draw
 from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.transport import wire
 from saddlewalk.transport.bus import open_bus, private_udp
@@ -68,20 +68,20 @@ class FaultyLcm:
         if channel != "SADDLEWALK_COMMAND":
             self._lcm.publish(channel, data)
             return
-        told = command_t.decode(data)
-        numbers = {"SPEED": told.speed_m_s, "HEEL_STRIKE": told.heel_strike_rad}
-        self._line.send(self._sender.frame("COMMAND", MODE=told.mode, **numbers), self._now_s())
+        command = command_t.decode(data)
+        numbers = {"SPEED": command.speed_m_s, "HEEL_STRIKE": command.heel_strike_rad}
+        self._line.send(self._sender.frame("COMMAND", MODE=command.mode, **numbers), self._now_s())
         for arrival in self._line.due(self._now_s()):
             if arrival.forged:  # what is flipped there, UDP drops; nobody else speaks
                 continue
             signals = wire.signals(arrival.frame)
-            told.mode, told.speed_m_s = int(signals["MODE"]), signals["SPEED"]
-            told.heel_strike_rad = signals["HEEL_STRIKE"]
-            self._lcm.publish(channel, told.encode())
+            command.mode, command.speed_m_s = int(signals["MODE"]), signals["SPEED"]
+            command.heel_strike_rad = signals["HEEL_STRIKE"]
+            self._lcm.publish(channel, command.encode())
 
 
 def faulty(
-    bus: can.BusABC, lcm: Any, happenings: Sequence[Happening], seed: int
+    bus: can.BusABC, lcm: Any, occurrences: Sequence[Occurrence], seed: int
 ) -> tuple[FaultyBus, FaultyLcm]:
     """Both with all of these faults, from now on."""
     begin_s = time.monotonic()
@@ -89,37 +89,41 @@ def faulty(
     def now_s() -> float:
         return time.monotonic() - begin_s
 
-    frames, commands = (Line(happenings, np.random.default_rng([seed, way])) for way in range(2))
+    frames, commands = (Line(occurrences, np.random.default_rng([seed, way])) for way in range(2))
     return FaultyBus(bus, frames, now_s), FaultyLcm(lcm, commands, now_s)
 
 
-class _Judging(Observer):
-    """The judge of a live walk: ages are those that the firmware tells, but none is younger than
+class _LiveChecker(Observer):
+    """The checker of a live walk: ages are those that the firmware tells, but none is younger than
     the last frame that was sent."""
 
-    def __init__(self, judge: Judge, happening: Happening, lines: tuple[Line, ...]) -> None:
+    def __init__(self, checker: Checker, occurrence: Occurrence, lines: tuple[Line, ...]) -> None:
         self.sent_s: dict[str, float] = {}
-        self._judge, self._happening, self._lines = judge, happening, lines
+        self._checker, self._happening, self._lines = checker, occurrence, lines
         self._begin_s = time.monotonic()
 
     def now_s(self) -> float:
         return time.monotonic() - self._begin_s
 
     def tick(self, tick: Tick, wearer: Wearer) -> None:
-        now_s, told = self.now_s(), self._judge.told
+        now_s, records = self.now_s(), self._checker.records
         for name, age in _AGES.items():
             came_s = now_s - tick.messages["INPUTS"][age] / 1000
             if name != "COMMAND":
                 came_s = min(came_s, self.sent_s.get(name, -math.inf) + SLACK_S)
-            told[name].came_s, told[name].born_s, told[name].usable_s = came_s, now_s, now_s
-        self._judge.walk_commanded = tick.plan is not None and not self._is_misled()
-        self._judge.begin_s = self._onset_s()
-        self._judge.tick(tick.messages, now_s, now_s)
+            records[name].came_s, records[name].born_s, records[name].usable_s = (
+                came_s,
+                now_s,
+                now_s,
+            )
+        self._checker.walk_commanded = tick.plan is not None and not self._is_misled()
+        self._checker.begin_s = self._onset_s()
+        self._checker.tick(tick.messages, now_s, now_s)
 
     def _is_misled(self) -> bool:
         """The commands themselves may be to stand."""
-        happening = self._happening
-        return happening.kind in ("noise", "bias") and "COMMAND" in happening.messages
+        occurrence = self._happening
+        return occurrence.kind in ("noise", "bias") and "COMMAND" in occurrence.messages
 
     def _onset_s(self) -> float:
         if not self._happening.is_of_frames or self._happening.kind == "none":
@@ -175,18 +179,18 @@ def run_live(scenario: Scenario, index: int, number: int, seed: int, config: Any
     """
     random = np.random.default_rng([seed, index, number, 1])
     fault = scenario.faults[index]
-    happening = draw(fault, random)
-    if happening.kind in OF_FRAMES_ONLY:
-        happening = replace(happening, messages=MEASURED)
-    frames, commands = (Line([happening], random) for _ in range(2))
+    occurrence = draw(fault, random)
+    if occurrence.kind in OF_FRAMES_ONLY:
+        occurrence = replace(occurrence, messages=MEASURED)
+    frames, commands = (Line([occurrence], random) for _ in range(2))
     wearer = Wearer(Body.of(config), seed=int(random.integers(2**32)))
     speed_m_s = float(random.uniform(*scenario.speed_m_s))
-    judge = Judge(config, core.body_of(config), math.inf)
+    checker = Checker(config, core.body_of(config), math.inf)
     spec = private_udp()
     url = f"udpm://239.255.76.67:{spec.rpartition(':')[2]}?ttl=0"
     options = (f"--can={spec}", f"--lcm={url}", *host_arguments(config))
     with running_host(*options) as host, open_bus(spec) as bus:
-        observer = _Judging(judge, happening, (frames, commands))
+        observer = _LiveChecker(checker, occurrence, (frames, commands))
         faulty_bus = FaultyBus(bus, frames, observer.now_s)
         observer.sent_s = faulty_bus.sent_s
         exoskeleton = Exoskeleton(
@@ -196,18 +200,18 @@ def run_live(scenario: Scenario, index: int, number: int, seed: int, config: Any
             FaultyLcm(open_lcm(url), commands, observer.now_s),
             [observer],
         )
-        stalls = _stalls(host, happening)
+        stalls = _stalls(host, occurrence)
         exoskeleton.run("realtime", scenario.duration_s)
         for stall in stalls:
             stall.join()
-    return outcome_of(fault, True, judge, wearer)
+    return outcome_of(fault, True, checker, wearer)
 
 
-def _stalls(host: subprocess.Popen, happening: Happening) -> list[threading.Timer]:
+def _stalls(host: subprocess.Popen, occurrence: Occurrence) -> list[threading.Timer]:
     """Stops the process and lets it go on, at its times."""
-    if happening.kind != "stall":
+    if occurrence.kind != "stall":
         return []
-    begin_s, end_s = happening.begin_s, happening.begin_s + happening.strength
+    begin_s, end_s = occurrence.begin_s, occurrence.begin_s + occurrence.strength
     timers = [
         threading.Timer(begin_s, host.send_signal, [signal.SIGSTOP]),
         threading.Timer(end_s, host.send_signal, [signal.SIGCONT]),

@@ -112,9 +112,9 @@ def _stuck(_: float, __: np.random.Generator) -> Disturbance:
 
 def _added(arrival: Arrival, amount: Callable[[str], float]) -> list[Arrival]:
     """Something added to each number of a frame; amount(signal) in its unit."""
-    told = wire.signals(arrival.frame)
+    values = wire.signals(arrival.frame)
     names = _NUMBERS[wire.message_name(arrival.frame.arbitration_id)]
-    numbers = {name: told[name] + amount(name) for name in names}
+    numbers = {name: values[name] + amount(name) for name in names}
     return [replace(arrival, frame=wire.changed(arrival.frame, **numbers))]
 
 
@@ -156,14 +156,16 @@ def _spoof(share: float, random: np.random.Generator) -> Disturbance:
     def disturb(arrival: Arrival) -> list[Arrival]:
         if random.random() >= share:
             return [arrival]
-        told = wire.signals(arrival.frame)
+        values = wire.signals(arrival.frame)
         steps = (0, *range(wire.COUNTER_STEP_MAX + 1, wire.COUNTERS))
-        other = {"COUNTER": (told["COUNTER"] + int(random.choice(steps))) % wire.COUNTERS}
+        other = {"COUNTER": (values["COUNTER"] + int(random.choice(steps))) % wire.COUNTERS}
         name = wire.message_name(arrival.frame.arbitration_id)
         if name == "COMMAND":
             other |= {"MODE": int(random.integers(2)), "SPEED": float(random.uniform(0, 2))}
         else:
-            numbers = {signal: float(random.normal(told[signal], 0.5)) for signal in _NUMBERS[name]}
+            numbers = {
+                signal: float(random.normal(values[signal], 0.5)) for signal in _NUMBERS[name]
+            }
             other |= numbers
         return [arrival, replace(arrival, frame=wire.changed(arrival.frame, **other), forged=True)]
 
@@ -220,7 +222,7 @@ class Scenario:
 
 
 @dataclass(frozen=True)
-class Happening:
+class Occurrence:
     """A fault as it is drawn for one walk."""
 
     kind: str
@@ -234,34 +236,34 @@ class Happening:
         return KINDS[self.kind].disturb is not None
 
 
-def draw(fault: Fault, random: np.random.Generator) -> Happening:
+def draw(fault: Fault, random: np.random.Generator) -> Occurrence:
     """When, and to which messages."""
     messages, known = fault.messages, KINDS[fault.kind].messages
     if not messages:
         one = int(random.integers(2 * len(known)))
         messages = known[one : one + 1] or known
     begin_s = float(random.uniform(*fault.from_s))
-    return Happening(fault.kind, fault.strength, messages, begin_s, begin_s + fault.for_s)
+    return Occurrence(fault.kind, fault.strength, messages, begin_s, begin_s + fault.for_s)
 
 
 class Line:
     """The way of frames to the firmware, and what happens to them there. One seed: the same."""
 
-    def __init__(self, happenings: Sequence[Happening], random: np.random.Generator) -> None:
+    def __init__(self, occurrences: Sequence[Occurrence], random: np.random.Generator) -> None:
         self.onset_s = math.inf  # when something first happened to a frame
         self._waiting: list[Arrival] = []
         self._sent = itertools.count()
         self._disturbances = [
-            (happening, KINDS[happening.kind].disturb(happening.strength, random))
-            for happening in happenings
-            if happening.is_of_frames
+            (occurrence, KINDS[occurrence.kind].disturb(occurrence.strength, random))
+            for occurrence in occurrences
+            if occurrence.is_of_frames
         ]
 
     def send(self, frame: can.Message, time_s: float) -> None:
         arrivals = [Arrival(time_s, 0, frame, time_s)]
         name = wire.message_name(frame.arbitration_id)
-        for happening, disturb in self._disturbances:
-            if happening.begin_s <= time_s < happening.end_s and name in happening.messages:
+        for occurrence, disturb in self._disturbances:
+            if occurrence.begin_s <= time_s < occurrence.end_s and name in occurrence.messages:
                 before = arrivals
                 arrivals = [after for arrival in before for after in disturb(arrival)]
                 if [*map(id, before)] != [*map(id, arrivals)]:

@@ -131,12 +131,12 @@ def _check_frames(data: bytes, processor: int, counts: Counts) -> None:
 
 def _frames(first: int, last: int, counts: Counts) -> int:
     """The least of what header, POINT:FRAMES and TRIAL say; a 16-bit count may have overflown."""
-    told = [] if last == OVERFLOWN else [last - first + 1]
+    stated = [] if last == OVERFLOWN else [last - first + 1]
     frames = counts.get(("POINT", "FRAMES"))
     if frames and frames[0] not in (0, OVERFLOWN):
-        told.append(frames[0])
+        stated.append(frames[0])
     ends = [counts.get(("TRIAL", f"ACTUAL_{edge}_FIELD"), ()) for edge in ("START", "END")]
     if all(len(words) == 2 for words in ends):
         start, end = (low + (high << 16) for low, high in ends)
-        told.append(end - start + 1)
-    return min(told, default=1)
+        stated.append(end - start + 1)
+    return min(stated, default=1)

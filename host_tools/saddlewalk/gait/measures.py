@@ -72,18 +72,18 @@ def measure(recording: Recording) -> WalkMeasures:
         half_foot_m=_half_foot_m(recording, placed),
         missing=_missing(recording, bool(pairs), bool(high_m), grounded) | no_sway,
     )
-    _refuse_inhuman(measures, unsteady(recording, events, placed))
+    _reject_implausible(measures, unsteady(recording, events, placed))
     return measures
 
 
 def refuse(source: str, quantity: str, value: float) -> None:
     """Raise UserError unless the value is one of a human walk."""
-    told = inhuman(quantity, value)
-    if told:
-        raise UserError(f"{source}: {told}")
+    problem = out_of_range(quantity, value)
+    if problem:
+        raise UserError(f"{source}: {problem}")
 
 
-def inhuman(quantity: str, value: float) -> str:
+def out_of_range(quantity: str, value: float) -> str:
     """What to say of a value that no human walk has; empty for one that it may have."""
     low, high, unit = HUMAN[quantity]
     if low <= value <= high:
@@ -103,24 +103,24 @@ def implausible(recording: Recording, gait: Gait) -> list[str]:
         ("step length", gait.step_length_m),
         ("step width", gait.step_width_m),
     )
-    told = [inhuman(quantity, value) for quantity, value in means if not np.isnan(value)]
+    problems = [out_of_range(quantity, value) for quantity, value in means if not np.isnan(value)]
     return [
         f"{recording.source}: {text}; t in s, markers in m, x forward, y to the left?"
-        for text in told
+        for text in problems
         if text
     ]
 
 
-def _refuse_inhuman(measures: WalkMeasures, reasons: list[str]) -> None:
+def _reject_implausible(measures: WalkMeasures, reasons: list[str]) -> None:
     """A speed that is not human is most often a unit, and makes all else look strange."""
     if np.isnan(measures.speed_m_s):
         raise UserError(f"{measures.source}: no walk: fewer than two heel strikes along +x")
-    speed = inhuman("walking speed", measures.speed_m_s)
+    speed = out_of_range("walking speed", measures.speed_m_s)
     if speed and (not reasons or abs(measures.speed_m_s) > HUMAN["walking speed"][1]):
         raise UserError(f"{measures.source}: {speed}")
     if reasons:
-        told = "; ".join([speed] * bool(speed) + reasons)
-        raise UserError(f"{measures.source}: not one steady straight walk: {told}")
+        problems = "; ".join([speed] * bool(speed) + reasons)
+        raise UserError(f"{measures.source}: not one steady straight walk: {problems}")
     for quantity, values in (
         ("step length", measures.length_m),
         ("step width", measures.width_m),

@@ -245,8 +245,8 @@ class _LcmRerun:
             return _unreadable(tick.number, event)
         for name, value in zip(HEALTH_FIELDS, recomputed, strict=True):
             if getattr(health, name) != value:
-                said = (str(getattr(health, name)), str(value))
-                return Difference(tick.number, f"{event.channel} {name}", *said)
+                values = (str(getattr(health, name)), str(value))
+                return Difference(tick.number, f"{event.channel} {name}", *values)
         return None
 
 
@@ -263,17 +263,17 @@ def _fields(config: Any) -> list[tuple[str, float]]:
 def _core_config(message: Any) -> Any:
     """A config_t as saddle_config_t. Raises UserError unless it has the very fields of this one."""
     config = default_config()
-    told = dict(_fields(message))
+    fields = dict(_fields(message))
     known = {name for name, _ in ffi().typeof(config).item.fields}
-    for names, fault in ((told.keys() - known, "is not"), (known - told.keys(), "is")):
+    for names, fault in ((fields.keys() - known, "is not"), (known - fields.keys(), "is")):
         if names:
             raise UserError(
                 f"its configuration is of saddlewalk {message.library_version}, and {min(names)} "
                 f"{fault} a field of {__version__}'s: give a log of the same version"
             )
-    if told["ankle"] not in ANKLES.values():
-        raise UserError(f"its configuration has ankle {told['ankle']}: give a log that is whole")
-    for name, value in told.items():
+    if fields["ankle"] not in ANKLES.values():
+        raise UserError(f"its configuration has ankle {fields['ankle']}: give a log that is whole")
+    for name, value in fields.items():
         setattr(config, name, value)
     return config
 
@@ -286,8 +286,8 @@ def _difference(tick: int, event: Event, recomputed: bytes) -> Difference:
     ours = _flat(type(recorded).decode(recomputed))
     for name, (kind, value) in _flat(recorded).items():
         if _bits(kind, value) != _bits(*ours[name]):
-            told = _text(kind, value), _text(*ours[name])
-            return Difference(tick, f"{event.channel} {name}", *told)
+            values = _text(kind, value), _text(*ours[name])
+            return Difference(tick, f"{event.channel} {name}", *values)
     return Difference(tick, event.channel, event.data.hex(), recomputed.hex())
 
 

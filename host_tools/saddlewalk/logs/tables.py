@@ -19,7 +19,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from saddlewalk.atomic_write import whole_file, whole_folder
+from saddlewalk.atomic_write import atomic_file, atomic_folder
 from saddlewalk.contract import SIDES
 from saddlewalk.errors import UserError
 from saddlewalk.logs.messages import Kind, Others, kinds
@@ -205,7 +205,7 @@ class _CsvFiles:
 
     def __init__(self, tables: list[Table], folder: Path, files: contextlib.ExitStack) -> None:
         self.paths = [folder / f"{table.name}.csv" for table in tables]
-        new = files.enter_context(whole_folder("--out", folder, table_names("csv")))
+        new = files.enter_context(atomic_folder("--out", folder, table_names("csv")))
         self._writers = {}
         for table in tables:
             file = files.enter_context((new / f"{table.name}.csv").open("w", newline=""))
@@ -227,7 +227,7 @@ class _ParquetFiles:
         import pyarrow.parquet
 
         self.paths = [folder / f"{table.name}.parquet" for table in tables]
-        new = files.enter_context(whole_folder("--out", folder, table_names("parquet")))
+        new = files.enter_context(atomic_folder("--out", folder, table_names("parquet")))
         self._writers = {}
         for table in tables:
             schema = pyarrow.schema(
@@ -259,7 +259,7 @@ class _McapFile:
         from mcap.writer import Writer
 
         self.paths = [path]
-        self._writer = Writer(files.enter_context(whole_file("--out", path, "wb")))
+        self._writer = Writer(files.enter_context(atomic_file("--out", path, "wb")))
         self._writer.start(library="saddlewalk")
         self._channels = {table.name: self._channel(table) for table in tables}
         self._rows = dict.fromkeys(self._channels, 0)

@@ -201,12 +201,12 @@ def _departures_table(trials: Sequence[Trial]) -> str:
 
 
 def _credits(trials: Sequence[Trial]) -> str:
-    told = {
+    datasets = {
         f"{trial.about['dataset']} ({trial.about.get('licence', '')})"
         for trial in trials
         if trial.about.get("dataset")
     }
-    return "The recordings are of " + "; ".join(sorted(told)) + "." if told else ""
+    return "The recordings are of " + "; ".join(sorted(datasets)) + "." if datasets else ""
 
 
 def _readings_table() -> str:

@@ -9,24 +9,24 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from saddlewalk.atomic_write import whole_file
+from saddlewalk.atomic_write import atomic_file
 from saddlewalk.contract import MODES
 from saddlewalk.pictures.walk import BLUE, FEET, FOOT_M, ORANGE, PINK, SKY
-from saddlewalk.planning.schedule import Instant, Wish
+from saddlewalk.planning.schedule import Instant, SpeedChange
 
 MODE_COLOURS = {"standing": "0.6", "starting": PINK, "walking": SKY, "stopping": ORANGE}
 SHADE = 0.16
 LATERAL_M = 0.26  # shown to each side
 
 
-def draw_schedule(path: str, wishes: Sequence[Wish], walked: Sequence[Instant]) -> None:
+def draw_schedule(path: str, changes: Sequence[SpeedChange], walked: Sequence[Instant]) -> None:
     """Draw to a file whose suffix names the format, PNG without one."""
     figure = Figure(figsize=(12, 8), dpi=100, layout="constrained")
     speed, above, height = figure.subplots(3, 1, height_ratios=(1, 1.25, 1))
     time_s = np.array([instant.t_s for instant in walked])
     com_m = np.array([_com_m(instant) for instant in walked])
     figure.suptitle("A walk as it is planned: start, change of speed, stop")
-    _draw_speed(speed, wishes, walked, time_s)
+    _draw_speed(speed, changes, walked, time_s)
     _draw_above(above, walked, com_m)
     height.plot(time_s, com_m[:, 2], color=BLUE, lw=1.6)
     height.set(ylabel="height of\nthe CoM (m)", xlabel="time (s)")
@@ -34,7 +34,7 @@ def draw_schedule(path: str, wishes: Sequence[Wish], walked: Sequence[Instant]) 
         _shade(axes, walked, time_s)
     _shade(above, walked, com_m[:, 0])
     _label_modes(speed, walked, time_s)
-    with whole_file("--picture", path, "wb") as file:
+    with atomic_file("--picture", path, "wb") as file:
         figure.savefig(file, format=Path(path).suffix.lower().removeprefix(".") or "png")
 
 
@@ -44,10 +44,10 @@ def _com_m(instant: Instant) -> tuple[float, float, float]:
 
 
 def _draw_speed(
-    axes: Axes, wishes: Sequence[Wish], walked: Sequence[Instant], time_s: np.ndarray
+    axes: Axes, changes: Sequence[SpeedChange], walked: Sequence[Instant], time_s: np.ndarray
 ) -> None:
-    starts_s = [wish.from_s for wish in wishes] + [max(time_s[-1], wishes[-1].from_s)]
-    speeds_m_s = [wish.speed_m_s for wish in wishes]
+    starts_s = [wish.from_s for wish in changes] + [max(time_s[-1], changes[-1].from_s)]
+    speeds_m_s = [wish.speed_m_s for wish in changes]
     axes.stairs(speeds_m_s, starts_s, baseline=None, color="black", ls="--", label="wanted")
     planned_m_s = [instant.output.plan.speed_m_s for instant in walked]
     axes.plot(time_s, planned_m_s, color=BLUE, lw=2, label="planned")

@@ -34,7 +34,7 @@ def schedule_of(speeds: Speeds, heel_strike_rad: float) -> Schedule:
 
 
 @dataclass(frozen=True)
-class Wish:
+class SpeedChange:
     """One row of a schedule."""
 
     line: int
@@ -56,36 +56,38 @@ class Instant:
 
     t_s: float
     output: Any
-    wish: Wish
+    wish: SpeedChange
     events: tuple[Event, ...]
 
 
-def read_schedule(source: str) -> list[Wish]:
+def read_schedule(source: str) -> list[SpeedChange]:
     """Raises UserError naming the file, the line and the column that is wrong."""
-    wishes: list[Wish] = []
+    changes: list[SpeedChange] = []
     for line, cells in read_series(source, ("t_s", "speed_m_s"), LONGEST_S):
         t_s, speed_m_s = cells["t_s"], cells["speed_m_s"]
-        if not wishes and t_s != 0:
+        if not changes and t_s != 0:
             raise UserError(f"{source}: line {line}, t_s: {t_s:g} must be 0: where the walk begins")
         if not 0 <= speed_m_s < math.inf:
             raise UserError(
                 f"{source}: line {line}, speed_m_s: {speed_m_s:g} must be 0 or more, finite"
             )
-        wishes.append(Wish(line, t_s, speed_m_s))
-    if not wishes:
+        changes.append(SpeedChange(line, t_s, speed_m_s))
+    if not changes:
         raise UserError(f"{source}: no rows: give at least 0 in t_s and a speed_m_s")
-    return wishes
+    return changes
 
 
-def walk(core: Core, wishes: list[Wish], heel_strike_rad: float, dt_s: float) -> Iterator[Instant]:
+def walk(
+    core: Core, changes: list[SpeedChange], heel_strike_rad: float, dt_s: float
+) -> Iterator[Instant]:
     """Endless, from standing, at t = k dt; ticks in between where dt is long."""
-    starts_s = [wish.from_s for wish in wishes]
+    starts_s = [wish.from_s for wish in changes]
     ticks_per_row = math.ceil(dt_s / TICK_S - _SAME_TIME_S)
     tick_s = dt_s / ticks_per_row
     before, events, tick = None, [], 0
     while True:
         t_s = tick * tick_s
-        wish = wishes[bisect_right(starts_s, t_s + _SAME_TIME_S) - 1]
+        wish = changes[bisect_right(starts_s, t_s + _SAME_TIME_S) - 1]
         command = Command(wish.speed_m_s, heel_strike_rad)
         output = core.tick(round(t_s * 1e6), command, Measurement())
         if before is not None:

@@ -18,15 +18,15 @@ COLUMNS = (
 def walk(core: Any, speed_m_s: float, hs_angle_deg: float, dt_s: float) -> Iterator[tuple]:
     """Endless (t_s, saddle_output_t) at t = k dt, ticking in between where dt is long."""
     command = Command(speed_m_s, math.radians(hs_angle_deg))
-    nobody = Measurement()
+    no_measurement = Measurement()
     core.join(command)
     ticks_per_row = math.ceil(dt_s / TICK_S)
-    yield 0.0, core.tick(0, command, nobody)
+    yield 0.0, core.tick(0, command, no_measurement)
     row = 0
     while True:
         for i in range(1, ticks_per_row + 1):
             time_s = (row + i / ticks_per_row) * dt_s
-            output = core.tick(round(time_s * 1e6), command, nobody)
+            output = core.tick(round(time_s * 1e6), command, no_measurement)
         row += 1
         yield row * dt_s, output
 

@@ -77,8 +77,8 @@ def in_words(session: Session) -> Iterator[str]:
     for run in session.runs:
         way = walked(run)
         levels = ", ".join(f"{name} {held_s:.1f} s" for name, held_s in time_in_levels(run).items())
-        told = f"{len(way.steps)} steps, {way.distance_m:.1f} m" if way else "steps not known"
-        yield f"{run.ticks} ticks, {run.duration_s:.1f} s, {told}; {levels}"
+        steps = f"{len(way.steps)} steps, {way.distance_m:.1f} m" if way else "steps not known"
+        yield f"{run.ticks} ticks, {run.duration_s:.1f} s, {steps}; {levels}"
 
 
 def time_in_levels(run: Run) -> dict[str, float]:
@@ -120,8 +120,10 @@ def _about(log: Path, session: Session) -> str:
         fate = "fell" if session.fell else "did not fall"
         lines.append(f"The wearer was emulated (SADDLEWALK_TRUTH) and {fate}.")
     if session.unreadable:
-        told = ", ".join(f"{count} on {_plain(name)}" for name, count in session.unreadable.items())
-        lines.append(f"Not read, being of no type that saddlewalk {__version__} has: {told}.")
+        channels = ", ".join(
+            f"{count} on {_plain(name)}" for name, count in session.unreadable.items()
+        )
+        lines.append(f"Not read, being of no type that saddlewalk {__version__} has: {channels}.")
     return "\n\n".join(lines)
 
 
@@ -153,8 +155,8 @@ def _in_short(run: Run, way: Way | None) -> str:
     rows.append(["lowest margin", _lowest(run)])
     found = alarms(run)
     counts = {name: int((found.value == LEVELS.index(name)).sum()) for name in LEVELS}
-    told = [f"{name} {counts[name]}" for name in ("unstable", "caution", "unknown")]
-    rows.append(["times that the level was", ", ".join(told) if run.has("verdict") else UNKNOWN])
+    times = [f"{name} {counts[name]}" for name in ("unstable", "caution", "unknown")]
+    rows.append(["times that the level was", ", ".join(times) if run.has("verdict") else UNKNOWN])
     return table(("what", "how much"), rows)
 
 
@@ -231,17 +233,21 @@ def _variabilities(group: str, steps: Steps, chosen: np.ndarray) -> Iterator[lis
     }
     for member, label in QUANTITIES.items():
         for side, landed in sides.items():
-            told = variability(getattr(steps, member)[landed])
-            numbers = (_known(told.mean, 3), _known(told.sd, 4), _known(100 * told.cv, 1, " %"))
-            yield [group, side, label, str(told.steps), *numbers]
+            spread = variability(getattr(steps, member)[landed])
+            numbers = (
+                _known(spread.mean, 3),
+                _known(spread.sd, 4),
+                _known(100 * spread.cv, 1, " %"),
+            )
+            yield [group, side, label, str(spread.steps), *numbers]
 
 
 def _quality(run: Run, troubles: Sequence[quality.Trouble]) -> str:
     numbers = np.frombuffer(run.numbers, np.int32)
     numbers = numbers[numbers != NO_NUMBER]
-    told = f"numbers {numbers[0]} to {numbers[-1]}" if len(numbers) else "without numbers"
+    numbering = f"numbers {numbers[0]} to {numbers[-1]}" if len(numbers) else "without numbers"
     found = quality.gaps(run, LISTED)
-    rows = [["ticks in the log", f"{run.ticks}, {told}"]]
+    rows = [["ticks in the log", f"{run.ticks}, {numbering}"]]
     rows += [
         [what, words]
         for what, words in (
@@ -263,7 +269,7 @@ def _quality(run: Run, troubles: Sequence[quality.Trouble]) -> str:
 
 def _troubles(run: Run, found: Sequence[quality.Trouble]) -> str:
     if not found:
-        return "No fault and no limit was told." if run.has("health") else ""
+        return "No faults or limits were reported." if run.has("health") else ""
     rows = [
         [
             each.name,

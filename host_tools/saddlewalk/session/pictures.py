@@ -66,7 +66,7 @@ _SCORES = (
 )
 _ALARM = "The same closely: {} from {:.2f} s."
 _STEPS = "Each step, {}, by the foot that landed."
-_TROUBLES = "When each fault and limit was told."
+_TROUBLES = "When each fault and limit was reported."
 
 
 def _draw_level(run: Run) -> bytes:

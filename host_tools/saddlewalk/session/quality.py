@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from saddlewalk import process_words
+from saddlewalk import status_text
 from saddlewalk.contract import FAULTS, LIMITS, STATUSES, TICK_S, name_of
 from saddlewalk.session.runs import Run, Spans
 
@@ -137,15 +137,15 @@ def ages(run: Run) -> list[Age]:
 def rejected(run: Run) -> str:
     """Frames accepted and refused since the firmware's start, and why; empty if nothing tells."""
     status, health = run.last("status"), run.last("health")
-    told = status or health
-    if told is None:
+    counters = status or health
+    if counters is None:
         return ""
     counts = [
-        f"{getattr(told, member)} {words}"
-        for words, member in process_words.REFUSED.items()
-        if getattr(told, member, 0)
+        f"{getattr(counters, member)} {words}"
+        for words, member in status_text.REFUSED.items()
+        if getattr(counters, member, 0)
     ]
-    return f"{told.frames_accepted} frames accepted, refused: {', '.join(counts) or 'none'}"
+    return f"{counters.frames_accepted} frames accepted, refused: {', '.join(counts) or 'none'}"
 
 
 def late(run: Run) -> str:
@@ -178,9 +178,9 @@ def _trouble(run: Run, name: str, words: str, there: np.ndarray) -> Trouble:
 
 def _age(run: Run, part: str, what: str) -> Age:
     age_us = run.logged("input", f"{part}_age_us")
-    told = age_us[age_us >= 0]
+    known_us = age_us[age_us >= 0]
     never = int((age_us < 0).sum())
-    if not len(told):
+    if not len(known_us):
         return Age(what, np.nan, np.nan, np.nan, never)
-    median, usual, oldest = np.percentile(told, (50, 95, 100), overwrite_input=True) / 1000
+    median, usual, oldest = np.percentile(known_us, (50, 95, 100), overwrite_input=True) / 1000
     return Age(what, float(median), float(usual), float(oldest), never)

@@ -235,8 +235,8 @@ class Run:
 
     def reasons(self, ticks: slice) -> list[str]:
         """In words, in the order of their coming."""
-        told = self._reasons[ticks]
-        numbers, first = np.unique(told[told >= 0], return_index=True)
+        codes = self._reasons[ticks]
+        numbers, first = np.unique(codes[codes >= 0], return_index=True)
         words = (reason_words(int(number)) for number in numbers[np.argsort(first)])
         return [each for each in words if each]
 

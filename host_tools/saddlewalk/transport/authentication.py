@@ -68,9 +68,9 @@ class Authenticator:
         if self._session is None or self._freshness == FRESHNESS_MAX:
             return []
         self._freshness += 1
-        told = sender.frame("COMMAND", **command)
-        code = code_of(self._key, self._session, self._freshness, told)
-        return [sender.frame("COMMAND_CODE", FRESHNESS=self._freshness, CODE=code), told]
+        frame = sender.frame("COMMAND", **command)
+        code = code_of(self._key, self._session, self._freshness, frame)
+        return [sender.frame("COMMAND_CODE", FRESHNESS=self._freshness, CODE=code), frame]
 
 
 def code_of(key: bytes, session: int, freshness: int, command: can.Message) -> int:

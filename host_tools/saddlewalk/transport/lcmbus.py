@@ -7,7 +7,7 @@ from pathlib import Path
 import lcm
 
 from saddlewalk.errors import UserError
-from saddlewalk.standard_error import standard_error_silent
+from saddlewalk.stderr_redirect import stderr_silenced
 from saddlewalk.transport.lcm_log import LcmLog
 
 DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"
@@ -22,7 +22,7 @@ def open_lcm(url: str | None = None) -> lcm.LCM:
     url = url or DEFAULT_URL
     _check_log(url)
     try:
-        with standard_error_silent():
+        with stderr_silenced():
             return lcm.LCM(url)
     except RuntimeError as error:
         right = f"for a multicast route, run `{ROUTE}`"

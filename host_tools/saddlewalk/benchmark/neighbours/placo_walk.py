@@ -7,7 +7,7 @@ strides that are asked for. It plans for a robot; this one is the simplest that 
 import numpy as np
 
 from saddlewalk.benchmark.neighbours import MissingError
-from saddlewalk.standard_error import standard_error_silent
+from saddlewalk.stderr_redirect import stderr_silenced
 
 # What a foot is to the walking QP as well: placo's feet lie along x, m.
 FOOT_WIDTH_M = 0.08
@@ -24,7 +24,7 @@ class PlacoWalk:
         self, step_m: float, step_time_s: float, width_m: float, height_m: float, period_s: float
     ) -> None:
         try:
-            with standard_error_silent():
+            with stderr_silenced():
                 import placo
 
                 self._robot = placo.HumanoidRobot(

@@ -41,7 +41,7 @@ _SCORES_OF_COM = {
 
 
 @dataclass
-class Told:
+class MessageRecord:
     """What is known, beside the firmware, of one message."""
 
     came_s: float = -math.inf  # the newest that was accepted, by the firmware's clock
@@ -50,14 +50,16 @@ class Told:
 
 
 @dataclass
-class Judge:
+class Checker:
     """Follows a walk tick by tick and finds what must not be. begin_s: of the fault."""
 
     config: Any
     body: Any  # saddle_body_t
     begin_s: float
-    told: dict[str, Told] = field(default_factory=lambda: {name: Told() for name in MESSAGES})
-    flaws: Counter = field(default_factory=Counter)
+    records: dict[str, MessageRecord] = field(
+        default_factory=lambda: {name: MessageRecord() for name in MESSAGES}
+    )
+    violations: Counter = field(default_factory=Counter)
     detected: int | None = None
     walk_commanded: bool = False  # by whom the firmware shall obey
     blind: int = 0
@@ -73,14 +75,14 @@ class Judge:
         """A frame that was accepted at time_s of the firmware's clock."""
         name = wire.message_name(arrival.frame.arbitration_id)
         signals = wire.signals(arrival.frame)
-        told = self.told[name]
+        record = self.records[name]
         if name != "COMMAND" or self._commands(signals):
-            told.came_s = time_s
-            told.born_s = arrival.born_s
+            record.came_s = time_s
+            record.born_s = arrival.born_s
         if name == "COMMAND" and not arrival.forged and self._commands(signals):
             self.walk_commanded = signals["MODE"] == 1 and signals["SPEED"] > 0
         if all(map(math.isfinite, signals.values())):
-            told.usable_s = time_s
+            record.usable_s = time_s
         self.forged += arrival.forged
 
     @staticmethod
@@ -95,17 +97,17 @@ class Judge:
         self._detect(messages, walk_s)
         if health["STATUS"] != library().SADDLE_OK:
             if messages["PLAN_STEP"]["VALID"] or verdict["LEVEL"]:
-                self.flaws[BAD_PLAN] += 1
+                self.violations[BAD_PLAN] += 1
             self._stopping_s = 0.0
             self._mode = STANDING
             return
-        ages_s = {name: clock_s - told.came_s for name, told in self.told.items()}
+        ages_s = {name: clock_s - record.came_s for name, record in self.records.items()}
         self._check_plan(messages)
         self._check_scores(messages, ages_s)
         self._check_stop(messages, stopping, ages_s, clock_s)
         self._armed = self._armed or all(ages_s[name] <= self._limit_s(name) for name in MEASURED)
         if verdict["LEVEL"] and any(
-            walk_s - self.told[name].born_s > self._limit_s(name) for name in MEASURED
+            walk_s - self.records[name].born_s > self._limit_s(name) for name in MEASURED
         ):
             self.blind += 1
 
@@ -119,9 +121,9 @@ class Judge:
     def _detect(self, messages: Messages, walk_s: float) -> None:
         """By what the firmware says, against what it said before the fault began."""
         lib, health = library(), messages["HEALTH"]
-        said = lib.SADDLE_LIMIT_SAFE_STOP | lib.SADDLE_LIMIT_TICK_GAP
+        reported = lib.SADDLE_LIMIT_SAFE_STOP | lib.SADDLE_LIMIT_TICK_GAP
         faults = int(messages["SCORES_FORCE"]["FAULTS"])
-        limits = int(health["LIMITS"]) & said
+        limits = int(health["LIMITS"]) & reported
         level = int(messages["VERDICT"]["LEVEL"])
         now = (int(health["STATUS"]), int(health["REJECTED_FRAMES"]), faults, limits)
         if walk_s < self.begin_s:
@@ -150,16 +152,16 @@ class Judge:
         return next((state for state in STATES if state in self.states), "walked on")
 
     def _check_plan(self, messages: Messages) -> None:
-        told = {
+        values = {
             f"{part} {name}": value
             for part in PLAN_MESSAGES
             for name, value in messages[part].items()
         }
-        sound = told["PLAN_STEP VALID"] == 1 and all(map(math.isfinite, told.values()))
+        sound = values["PLAN_STEP VALID"] == 1 and all(map(math.isfinite, values.values()))
         bounds = plan_bounds(self.config, self.body).items()
-        within = all(low <= told[name] <= high for name, (low, high) in bounds)
-        if not (sound and within and _legs_reach(told, self.body)):
-            self.flaws[BAD_PLAN] += 1
+        within = all(low <= values[name] <= high for name, (low, high) in bounds)
+        if not (sound and within and _legs_reach(values, self.body)):
+            self.violations[BAD_PLAN] += 1
 
     def _check_scores(self, messages: Messages, ages_s: dict[str, float]) -> None:
         old = {name for name in MEASURED if ages_s[name] > self._limit_s(name)}
@@ -172,7 +174,7 @@ class Judge:
             math.isfinite(messages[part][name]) for part, names in scores.items() for name in names
         )
         if old and (scored or messages["VERDICT"]["LEVEL"]):
-            self.flaws[OLD_SCORE] += 1
+            self.violations[OLD_SCORE] += 1
 
     def _check_stop(
         self, messages: Messages, stopping: bool, ages_s: dict[str, float], clock_s: float
@@ -181,17 +183,17 @@ class Judge:
         mode = int(messages["PLAN_EVENTS"]["MODE"])
         ended = mode in (STOPPING, STANDING) and self._mode in (STARTING, WALKING)
         if ended and self.walk_commanded and not stopping:
-            self.flaws[SILENT_STOP] += 1
+            self.violations[SILENT_STOP] += 1
         self._mode = mode
         needed = MESSAGES if self._armed else MESSAGES[:1]
         lost = any(ages_s[name] > self._limit_s(name) for name in needed)
         unusable = any(
-            clock_s - self.told[name].usable_s > self._limit_s(name) + TICK_S for name in needed
+            clock_s - self.records[name].usable_s > self._limit_s(name) + TICK_S for name in needed
         )
         self._stopping_s = self._stopping_s + TICK_S if stopping else 0.0
         still_walks = self._stopping_s > STOP_WITHIN_S and mode != STANDING
         if still_walks or ((lost or unusable) and not stopping):
-            self.flaws[NO_STOP] += 1
+            self.violations[NO_STOP] += 1
 
 
 def plan_bounds(config: Any, body: Any) -> dict[str, tuple[float, float]]:
@@ -222,8 +224,10 @@ def plan_bounds(config: Any, body: Any) -> dict[str, tuple[float, float]]:
     return {name: (low - ROUNDING, high + ROUNDING) for name, (low, high) in bounds.items()}
 
 
-def _legs_reach(told: dict[str, float], body: Any) -> bool:
+def _legs_reach(values: dict[str, float], body: Any) -> bool:
     """No planned foot is further from under the CoM than a leg is long."""
-    com_m = complex(told["PLAN_COM X"], told["PLAN_COM Y"])
-    feet_m = (complex(told[f"PLAN_{side} X"], told[f"PLAN_{side} Y"]) for side in ("LEFT", "RIGHT"))
+    com_m = complex(values["PLAN_COM X"], values["PLAN_COM Y"])
+    feet_m = (
+        complex(values[f"PLAN_{side} X"], values[f"PLAN_{side} Y"]) for side in ("LEFT", "RIGHT")
+    )
     return all(abs(foot_m - com_m) <= body.pendulum_m for foot_m in feet_m)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 @contextlib.contextmanager
-def standard_error_silent() -> Iterator[None]:
+def stderr_silenced() -> Iterator[None]:
     """For a library that explains at length what one line of ours says, or what does not matter."""
     saved = os.dup(2)
     with Path(os.devnull).open("wb") as nowhere:

@@ -20,7 +20,7 @@ LETTERS = {
 }
 
 
-def large(word: str) -> str:
+def banner(word: str) -> str:
     """Three lines of text; a word with a letter that is not here stays as it is."""
     if not set(word) <= LETTERS.keys():
         return word

@@ -21,7 +21,7 @@ EMULATED = "emulated"
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class CrossValidation:
     """A walker's figures with what the others taught."""
 
     threshold: float  # of the margin, where the others' timely alarms exceed the false ones most
@@ -30,10 +30,10 @@ class LeftOut:
     zero_margin_probability: float  # of a fall within HORIZON_S at margin 0, by the others
     brier: float  # mean square of probability less outcome, over the ticks after a push
     brier_of_base_rate: float  # of one who always says the walker's own share
-    reliability: list[tuple[float, float, int]]  # said, came true, ticks
+    reliability: list[tuple[float, float, int]]  # predicted share, observed share, ticks
 
 
-def leave_one_out(scores: Mapping[str, Sequence[Score]]) -> dict[str, LeftOut]:
+def leave_one_out(scores: Mapping[str, Sequence[Score]]) -> dict[str, CrossValidation]:
     """By walker; empty unless there are two kinds of pushed walkers."""
     pushed = {name: [s for s in each if s.pushed] for name, each in scores.items()}
     pushed = {name: each for name, each in pushed.items() if _both(each)}
@@ -53,21 +53,21 @@ def _kind(name: str) -> str:
     return EMULATED if name.startswith(EMULATED) else name
 
 
-def _figures(mine: Sequence[Score], others: Sequence[Sequence[Score]]) -> LeftOut:
+def _figures(mine: Sequence[Score], others: Sequence[Sequence[Score]]) -> CrossValidation:
     gains = [[np.subtract(*_rates(each, at)) for at in THRESHOLDS] for each in others]
     threshold = float(THRESHOLDS[np.argmax(np.mean(gains, axis=0))])
     timely_pct, false_pct = _rates(mine, threshold)
     line = _fit([_ticks(each) for each in others])
     margin, falls = _ticks(mine)
-    said = _probability(line, margin)
-    return LeftOut(
+    predicted = _probability(line, margin)
+    return CrossValidation(
         threshold=threshold,
         timely_pct=timely_pct,
         alarm_though_upright_pct=false_pct,
         zero_margin_probability=float(_probability(line, np.zeros(1))[0]),
-        brier=float(np.mean((said - falls) ** 2)),
+        brier=float(np.mean((predicted - falls) ** 2)),
         brier_of_base_rate=float(np.mean((falls.mean() - falls) ** 2)),
-        reliability=_reliability(said, falls),
+        reliability=_reliability(predicted, falls),
     )
 
 
@@ -111,24 +111,24 @@ def _fit(walkers: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
     design = np.column_stack([np.ones_like(margin), margin])
     line = np.zeros(2)
     for _ in range(30):
-        said = _probability(line, margin)
-        slope = design.T @ (weight * (falls - said))
-        bend = (design * (weight * said * (1.0 - said))[:, None]).T @ design
+        predicted = _probability(line, margin)
+        slope = design.T @ (weight * (falls - predicted))
+        bend = (design * (weight * predicted * (1.0 - predicted))[:, None]).T @ design
         line = line + np.linalg.solve(bend + 1e-9 * np.eye(2), slope)
     return line
 
 
-def _reliability(said: np.ndarray, falls: np.ndarray) -> list[tuple[float, float, int]]:
-    where = np.clip(np.digitize(said, BINS) - 1, 0, len(BINS) - 2)
+def _reliability(predicted: np.ndarray, falls: np.ndarray) -> list[tuple[float, float, int]]:
+    where = np.clip(np.digitize(predicted, BINS) - 1, 0, len(BINS) - 2)
     shown = [where == index for index in range(len(BINS) - 1)]
     return [
-        (float(said[there].mean()), float(falls[there].mean()), int(there.sum()))
+        (float(predicted[there].mean()), float(falls[there].mean()), int(there.sum()))
         for there in shown
         if there.sum() >= LEAST_IN_BIN
     ]
 
 
-def table(found: Mapping[str, LeftOut]) -> Table:
+def table(found: Mapping[str, CrossValidation]) -> Table:
     shown = Table(title="Each kind of walker by what the others taught", title_justify="left")
     shown.add_column("")
     for name in found:

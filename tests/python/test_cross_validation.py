@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from saddlewalk.evaluation.left_out import leave_one_out
+from saddlewalk.evaluation.cross_validation import leave_one_out
 from saddlewalk.evaluation.scoring import Score
 
 TICK_S = 0.08
