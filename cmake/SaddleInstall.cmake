@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/saddlewalk)
-install(TARGETS saddlewalk_core saddlewalk_wire saddle_can_codec EXPORT saddlewalk
+install(TARGETS saddlewalk_core saddlewalk_wire EXPORT saddlewalk
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY firmware/core/include/saddlewalk firmware/wire/include/saddlewalk
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

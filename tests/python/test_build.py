@@ -37,6 +37,43 @@ def test_a_missing_product_is_named_with_the_command_that_makes_it(monkeypatch, 
         paths.built("bin/saddlewalk-host")
 
 
+@pytest.mark.parametrize(
+    ("now", "then", "said"),
+    [
+        ("SPEED : 16|16@1- (0.0001,0)", "SPEED : 16|16@1- (0.0001,1)", "has offset 1: must be 0"),
+        ("SPEED : 16|16@1-", "SPEED : 16|12@1-", "is signed with 12 bits: must be 16"),
+        ("SPEED : 16|16@1-", "SPEED : 23|16@0-", "must be a little-endian integer"),
+        ("VERSION : 48|8@1+ (1,0)", "VERSION : 48|8@1+ (2,0)", "unsigned with scale 2: must be 1"),
+        ("COUNTER : 8|4@1+", "COUNTER : 8|3@1+", "COMMAND_CODE must begin with CRC, 0|8, and COU"),
+        ('VAL_ 256 SPEED -32768 "NOT_AVAILABLE" ;', "", "signed without a word for -32768"),
+        ("BO_ 256 COMMAND: 8", "BO_ 256 COMMAND: 7", "COMMAND must be a classic frame of 8 bytes"),
+    ],
+)
+def test_a_dbc_that_the_wire_cannot_pack_ends_the_build(now, then, said, tmp_path):
+    text = (paths.CHECKOUT / "firmware/wire/saddlewalk.dbc").read_text()
+    changed = tmp_path / "changed.dbc"
+    changed.write_text(text.replace(now, then, 1))
+    generator = paths.CHECKOUT / "tools/wire_signals.py"
+    command = [sys.executable, generator, changed, tmp_path / "wire_signals.h"]
+    result = subprocess.run(command, capture_output=True, text=True)
+    assert text.count(now) and result.returncode == 1
+    assert said in result.stderr and "Traceback" not in result.stderr
+    assert not (tmp_path / "wire_signals.h").exists()
+
+
+def test_all_that_pytest_loads_is_built_by_make_build():
+    """What ninja makes only for `tests` would be an old one after `make build`."""
+    ninja = Path(sys.executable).with_name("ninja")
+    command = [ninja, "-C", paths.build_dir(), "-t", "inputs", "all"]
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    made = {Path(line).name for line in result.stdout.splitlines()}
+    loaded = set()
+    for test in (TESTS / "python").glob("*.py"):
+        loaded |= set(re.findall(r'paths\.built\(\s*f?"(?:lib/|bin/)?([\w.-]+)"', test.read_text()))
+    assert {"libsaddlewalk_wire_shared.so", "saddlewalk_wire_cdef.h"} <= loaded
+    assert loaded <= made
+
+
 def test_no_two_files_of_the_firmware_need_each_other():
     """A .c and its .h are one; what a header of a name needs, any header of that name does."""
     needs: dict[str, set[str]] = {}

@@ -116,6 +116,22 @@ def test_find_package_gives_the_core_and_the_wire(installed, walk, tmp_path):
     assert len(lines) > 15
 
 
+def test_the_wire_builds_without_cmake_to_the_same_frames(installed, tmp_path):
+    """As docs/porting.md says it for any other build."""
+    configure("find_package", tmp_path, CMAKE_PREFIX_PATH=installed, WANTED=VERSION)
+    run(cached("CMAKE_COMMAND"), "--build", tmp_path, "-j2")
+    wire, dbc = CHECKOUT / "firmware/wire", CHECKOUT / "firmware/wire/saddlewalk.dbc"
+    generator = CHECKOUT / "tools/wire_signals.py"
+    run(cached("Python3_EXECUTABLE"), generator, dbc, tmp_path / "wire_signals.h")
+    include = [f"-I{folder}" for folder in (CORE / "include", wire / "include", tmp_path)]
+    version = re.match(r'VERSION "(\d+)"', dbc.read_text())[1]
+    flags = ["-ffp-contract=off", f"-DSADDLE_WIRE_VERSION={version}"]
+    run(CHECKOUT / "tools/amalgamate.py", tmp_path / "core.c")
+    sources = [CONSUMERS / "frames.c", tmp_path / "core.c", *(wire / "src").glob("*.c")]
+    compile_c(tmp_path / "plain", *include, *flags, *sources)
+    assert run(tmp_path / "plain").stdout == run(tmp_path / "frames").stdout
+
+
 def test_find_package_refuses_another_version(installed, tmp_path):
     found = {"CMAKE_PREFIX_PATH": installed, "WANTED": "99.0"}
     result = configure("find_package", tmp_path, check=False, **found)

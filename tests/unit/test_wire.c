@@ -1,6 +1,7 @@
 /** What the cross test with Python cannot see: check values, the layout of a frame, the receiver. */
 #include <saddlewalk/wire.h>
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 #include <unity.h>
@@ -45,6 +46,38 @@ static void test_command_bytes(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(&covered[2], &frame.data[1], 7);
     TEST_ASSERT_EQUAL_HEX8(saddle_wire_crc(covered, sizeof covered), frame.data[0]);
     TEST_ASSERT_EQUAL_UINT8(5, saddle_wire_counter(frame.data));
+}
+
+/** Raw value of a commanded speed. */
+static int16_t raw_speed(float speed_m_s)
+{
+    const saddle_command_t command = {.speed_m_s = speed_m_s};
+    saddle_frame_t frame;
+    saddle_wire_encode_command(&command, 0, &frame);
+    return (int16_t)(uint16_t)(frame.data[2] | (uint32_t)frame.data[3] << 8);
+}
+
+static void test_numbers_round_half_away_from_zero(void)
+{
+    for (int32_t halves = -65534; halves <= 65534; ++halves) {
+        const float tie = (float)halves * 0.5e-4f;
+        const float values[] = {nextafterf(tie, -4.0f), tie, nextafterf(tie, 4.0f)};
+        for (size_t i = 0; i < 3u; ++i) {
+            const float nearest = fminf(fmaxf(roundf(values[i] / 1.0e-4f), -32767.0f), 32767.0f);
+            TEST_ASSERT_EQUAL_INT16((int16_t)nearest, raw_speed(values[i]));
+        }
+    }
+}
+
+static void test_numbers_beyond_the_range_saturate(void)
+{
+    TEST_ASSERT_EQUAL_INT16(INT16_MAX, raw_speed(3.2768f));
+    TEST_ASSERT_EQUAL_INT16(INT16_MAX, raw_speed(FLT_MAX));
+    TEST_ASSERT_EQUAL_INT16(-INT16_MAX, raw_speed(-3.2768f));
+    TEST_ASSERT_EQUAL_INT16(-INT16_MAX, raw_speed(-FLT_MAX));
+    TEST_ASSERT_EQUAL_INT16(INT16_MIN, raw_speed(INFINITY));
+    TEST_ASSERT_EQUAL_INT16(INT16_MIN, raw_speed(-INFINITY));
+    TEST_ASSERT_EQUAL_INT16(INT16_MIN, raw_speed(NAN));
 }
 
 static void test_every_single_bit_error_is_refused(void)
@@ -377,6 +410,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_crc_check_value);
     RUN_TEST(test_command_bytes);
+    RUN_TEST(test_numbers_round_half_away_from_zero);
+    RUN_TEST(test_numbers_beyond_the_range_saturate);
     RUN_TEST(test_every_single_bit_error_is_refused);
     RUN_TEST(test_frame_under_another_identifier_is_refused);
     RUN_TEST(test_what_the_firmware_does_not_receive_is_malformed);

@@ -1,6 +1,6 @@
 #include <saddlewalk/wire.h>
 
-#include "saddle_can.h"
+#include "wire_signals.h"
 #include <float.h>
 #include <math.h>
 
@@ -16,32 +16,58 @@
  *  of no use for longer. */
 #define IDLE_SESSION_TICKS 25u
 
-/** Raw value of a number: the scale is the generated codec's, and the ends of the range follow. */
-#define RAW(signal, valid, value)                                                                \
-    ((valid) && is_finite(value)                                                                 \
-         ? saddle_can_##signal##_encode(limited(value, saddle_can_##signal##_decode(INT16_MAX))) \
-         : (int16_t)NOT_AVAILABLE)
+/** A frame's bytes 0 to 7 are one number of 64 bits, byte 0 the lowest. These are a signal's part of
+ *  it: of a number, or of a count or code, whose higher bits are dropped. */
+#define NUMBER(signal, valid, value)                                    \
+    ((uint64_t)raw_of((valid), (value), SIGNALS[SIGNAL_##signal].scale) \
+     << SIGNALS[SIGNAL_##signal].start)
+#define CODE(signal, value) \
+    ((uint64_t)((value) & mask_of(SIGNAL_##signal)) << SIGNALS[SIGNAL_##signal].start)
 
-#define NUMBER(signal, raw) ((raw) == NOT_AVAILABLE ? NAN : saddle_can_##signal##_decode(raw))
+/** And back. */
+#define NUMBER_IN(signal, bits) number_of(&SIGNALS[SIGNAL_##signal], (bits))
+#define CODE_IN(signal, bits) \
+    ((uint32_t)((bits) >> SIGNALS[SIGNAL_##signal].start) & mask_of(SIGNAL_##signal))
+
+/** Half steps at the end of a number's range. */
+#define HALVES_MAX (2.0f * INT16_MAX)
 
 static bool is_finite(float value)
 {
     return value >= -FLT_MAX && value <= FLT_MAX;
 }
 
-static float limited(float value, float limit)
+/** All bits of a count or code. */
+static uint32_t mask_of(size_t signal)
 {
-    return value > limit ? limit : (value < -limit ? -limit : value);
+    return UINT32_MAX >> (32u - SIGNALS[signal].length);
 }
 
-static uint16_t limited_u16(uint32_t value)
+/** The nearest whole number of steps, ties away from 0, in 16 bits. What is beyond the range never
+ *  becomes an integer, nor does NaN. Inlined at each of its calls it would double the wire. */
+static SADDLE_NOINLINE uint32_t raw_of(bool valid, float value, float step)
 {
-    return value > UINT16_MAX ? (uint16_t)UINT16_MAX : (uint16_t)value;
+    const float halves = value / (0.5f * step);
+    int32_t raw = NOT_AVAILABLE;
+    if (valid && __builtin_fabsf(halves) <= HALVES_MAX) {
+        const int32_t whole = (int32_t)halves;
+        return (uint32_t)(whole + (whole >= 0)) >> 1 & UINT16_MAX;
+    }
+    if (valid && is_finite(value)) {
+        raw = value > 0.0f ? INT16_MAX : -INT16_MAX;
+    }
+    return (uint32_t)raw & UINT16_MAX;
 }
 
-static uint8_t limited_u8(uint32_t value)
+static float number_of(const signal_t *signal, uint64_t bits)
 {
-    return value > UINT8_MAX ? (uint8_t)UINT8_MAX : (uint8_t)value;
+    const int16_t raw = (int16_t)(uint16_t)(bits >> signal->start);
+    return raw == NOT_AVAILABLE ? NAN : (float)raw * signal->scale;
+}
+
+static uint32_t limited(uint32_t value, uint32_t largest)
+{
+    return value < largest ? value : largest;
 }
 
 static float seconds(uint32_t us)
@@ -50,43 +76,64 @@ static float seconds(uint32_t us)
 }
 
 /** 12 bits of milliseconds; the largest: as old, older, or never. */
-static uint16_t age_ms(uint32_t us)
+static uint32_t age_ms(uint32_t us)
 {
-    return us / 1000u < AGE_MAX_MS ? (uint16_t)(us / 1000u) : (uint16_t)AGE_MAX_MS;
+    return limited(us / 1000u, AGE_MAX_MS);
 }
 
-/** What the polynomial 0x1D makes of each upper half byte. */
-static const uint8_t CRC_OF_NIBBLE[16] = {0x00, 0x1D, 0x3A, 0x27, 0x74, 0x69, 0x4E, 0x53,
-                                          0xE8, 0xF5, 0xD2, 0xCF, 0x9C, 0x81, 0xA6, 0xBB};
-
-static uint32_t crc_of_nibble(uint32_t crc)
+static uint32_t crc_after(uint32_t crc, uint32_t byte)
 {
-    return (crc << 4 & 0xFFu) ^ CRC_OF_NIBBLE[crc >> 4];
+    return CRC_OF_BYTE[crc ^ (byte & 0xFFu)];
 }
 
 uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length)
 {
     uint32_t crc = 0xFFu;
     for (size_t i = 0; i < length; ++i) {
-        crc = crc_of_nibble(crc_of_nibble(crc ^ bytes[i]));
+        crc = crc_after(crc, bytes[i]);
     }
     return (uint8_t)(crc ^ 0xFFu);
 }
 
-static uint8_t frame_crc(uint32_t id, const uint8_t *data)
+/** The same over an identifier and the seven bytes above byte 0. */
+static uint32_t frame_crc(uint32_t id, uint64_t bits)
 {
-    uint8_t bytes[1u + SADDLE_WIRE_LENGTH] = {(uint8_t)id, (uint8_t)(id >> 8)};
-    for (size_t i = 1; i < SADDLE_WIRE_LENGTH; ++i) {
-        bytes[i + 1u] = data[i];
-    }
-    return saddle_wire_crc(bytes, sizeof bytes);
+    const uint32_t low = (uint32_t)bits, high = (uint32_t)(bits >> 32);
+    uint32_t crc = crc_after(crc_after(0xFFu, id), id >> 8);
+    crc = crc_after(crc_after(crc_after(crc, low >> 8), low >> 16), low >> 24);
+    crc = crc_after(crc_after(crc, high), high >> 8);
+    return crc_after(crc_after(crc, high >> 16), high >> 24) ^ 0xFFu;
 }
 
-static void seal(saddle_frame_t *frame, uint16_t id)
+static uint32_t word_at(const uint8_t *bytes)
+{
+    return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
+           (uint32_t)bytes[3] << 24;
+}
+
+static uint64_t bits_of(const uint8_t *data)
+{
+    return (uint64_t)word_at(data + 4) << 32 | word_at(data);
+}
+
+static void put_word(uint8_t *bytes, uint32_t word)
+{
+    bytes[0] = (uint8_t)word;
+    bytes[1] = (uint8_t)(word >> 8);
+    bytes[2] = (uint8_t)(word >> 16);
+    bytes[3] = (uint8_t)(word >> 24);
+}
+
+/** A whole frame; its bits have no CRC yet. */
+static void seal(saddle_frame_t *frame, uint16_t id, uint64_t bits)
 {
     frame->id = id;
-    frame->data[0] = frame_crc(id, frame->data);
+    put_word(frame->data, (uint32_t)bits | frame_crc(id, bits));
+    put_word(frame->data + 4, (uint32_t)(bits >> 32));
 }
+
+#define ENCODE(frame, message, counter, signals) \
+    seal((frame), MESSAGE_##message, CODE(message##_COUNTER, (counter)) | (signals))
 
 uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH])
 {
@@ -118,38 +165,32 @@ static bool in_step(saddle_wire_alive_t *alive, uint8_t counter)
 static saddle_wire_message_t message_of(uint32_t id)
 {
     switch (id) {
-    case SADDLE_CAN_COMMAND_FRAME_ID: return SADDLE_WIRE_COMMAND;
-    case SADDLE_CAN_COMMAND_CODE_FRAME_ID: return SADDLE_WIRE_COMMAND_CODE;
-    case SADDLE_CAN_MEASURED_COM_FRAME_ID: return SADDLE_WIRE_MEASURED_COM;
-    case SADDLE_CAN_MEASURED_LEFT_FRAME_ID: return SADDLE_WIRE_MEASURED_LEFT;
-    case SADDLE_CAN_MEASURED_RIGHT_FRAME_ID: return SADDLE_WIRE_MEASURED_RIGHT;
+    case MESSAGE_COMMAND: return SADDLE_WIRE_COMMAND;
+    case MESSAGE_COMMAND_CODE: return SADDLE_WIRE_COMMAND_CODE;
+    case MESSAGE_MEASURED_COM: return SADDLE_WIRE_MEASURED_COM;
+    case MESSAGE_MEASURED_LEFT: return SADDLE_WIRE_MEASURED_LEFT;
+    case MESSAGE_MEASURED_RIGHT: return SADDLE_WIRE_MEASURED_RIGHT;
     default: return SADDLE_WIRE_NONE;
     }
 }
 
-static bool speaks_our_version(saddle_wire_receiver_t *receiver, saddle_wire_message_t message,
-                               const uint8_t *data)
+static bool speaks_our_version(saddle_wire_receiver_t *receiver, uint64_t command)
 {
-    if (message != SADDLE_WIRE_COMMAND) {
-        return true;
+    const uint32_t version = CODE_IN(COMMAND_WIRE_VERSION, command);
+    if (version != SADDLE_WIRE_VERSION) {
+        receiver->other_version = (uint8_t)version;
     }
-    struct saddle_can_command_t command;
-    (void)saddle_can_command_unpack(&command, data, SADDLE_WIRE_LENGTH);
-    if (command.wire_version != SADDLE_WIRE_VERSION) {
-        receiver->other_version = command.wire_version;
-        return false;
-    }
-    return true;
+    return version == SADDLE_WIRE_VERSION;
 }
 
 /** One block for the cipher: the session, its freshness, and the frame with its identifier. */
 static uint32_t code_of(const saddle_cmac_key_t *key, uint32_t session, uint16_t freshness,
                         const uint8_t *command)
 {
-    uint8_t bytes[SADDLE_CMAC_LENGTH] = {
-        (uint8_t)session,          (uint8_t)(session >> 8),        (uint8_t)(session >> 16),
-        (uint8_t)(session >> 24),  (uint8_t)freshness,             (uint8_t)(freshness >> 8),
-        (uint8_t)SADDLE_CAN_COMMAND_FRAME_ID, (uint8_t)(SADDLE_CAN_COMMAND_FRAME_ID >> 8)};
+    uint8_t bytes[SADDLE_CMAC_LENGTH] = {(uint8_t)session,         (uint8_t)(session >> 8),
+                                         (uint8_t)(session >> 16), (uint8_t)(session >> 24),
+                                         (uint8_t)freshness,       (uint8_t)(freshness >> 8),
+                                         (uint8_t)MESSAGE_COMMAND, (uint8_t)(MESSAGE_COMMAND >> 8)};
     uint8_t code[SADDLE_CMAC_LENGTH];
     for (size_t i = 0; i < SADDLE_WIRE_LENGTH; ++i) {
         bytes[8u + i] = command[i];
@@ -161,17 +202,18 @@ static uint32_t code_of(const saddle_cmac_key_t *key, uint32_t session, uint16_t
 /** A code is tried once. */
 static bool is_authentic(saddle_wire_guard_t *guard, const uint8_t *command)
 {
-    struct saddle_can_command_code_t told;
     if (!guard->demanded || !guard->waits) {
         return !guard->demanded;
     }
     guard->waits = false;
-    (void)saddle_can_command_code_unpack(&told, guard->frame, SADDLE_WIRE_LENGTH);
-    if (!guard->opened || told.freshness <= guard->freshness ||
-        told.code != code_of(&guard->key, guard->session, told.freshness, command)) {
+    const uint64_t code = bits_of(guard->frame);
+    const uint16_t freshness = (uint16_t)CODE_IN(COMMAND_CODE_FRESHNESS, code);
+    if (!guard->opened || freshness <= guard->freshness ||
+        CODE_IN(COMMAND_CODE_CODE, code) !=
+            code_of(&guard->key, guard->session, freshness, command)) {
         return false;
     }
-    guard->freshness = told.freshness;
+    guard->freshness = freshness;
     return true;
 }
 
@@ -183,62 +225,73 @@ static void keep_code(saddle_wire_guard_t *guard, const uint8_t *data)
     }
 }
 
+/** The count that a frame of this message moves. */
+static uint32_t *count_of(saddle_wire_receiver_t *receiver, saddle_wire_message_t message,
+                          uint32_t id, const uint8_t *data)
+{
+    const uint64_t bits = bits_of(data);
+    const bool commands = message == SADDLE_WIRE_COMMAND;
+    if ((bits & 0xFFu) != frame_crc(id, bits)) {
+        return &receiver->bad_crc;
+    }
+    if (commands && !speaks_our_version(receiver, bits)) {
+        return &receiver->bad_version;
+    }
+    if (commands && !is_authentic(&receiver->guard, data)) {
+        return &receiver->bad_code;
+    }
+    if (!in_step(&receiver->alive[message], saddle_wire_counter(data))) {
+        return &receiver->bad_counter;
+    }
+    return &receiver->accepted;
+}
+
 saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint32_t id,
                                          const uint8_t *data, size_t length)
 {
     const saddle_wire_message_t message = message_of(id);
-    uint32_t *count = &receiver->accepted;
     if (length != SADDLE_WIRE_LENGTH || message == SADDLE_WIRE_NONE) {
-        count = &receiver->malformed;
-    } else if (data[0] != frame_crc(id, data)) {
-        count = &receiver->bad_crc;
-    } else if (!speaks_our_version(receiver, message, data)) {
-        count = &receiver->bad_version;
-    } else if (message == SADDLE_WIRE_COMMAND && !is_authentic(&receiver->guard, data)) {
-        count = &receiver->bad_code;
-    } else if (!in_step(&receiver->alive[message], saddle_wire_counter(data))) {
-        count = &receiver->bad_counter;
-    } else if (message == SADDLE_WIRE_COMMAND_CODE) {
+        ++receiver->malformed;
+        return SADDLE_WIRE_NONE;
+    }
+    uint32_t *count = count_of(receiver, message, id, data);
+    ++*count;
+    if (count != &receiver->accepted) {
+        return SADDLE_WIRE_NONE;
+    }
+    if (message == SADDLE_WIRE_COMMAND_CODE) {
         keep_code(&receiver->guard, data);
     }
-    ++*count;
-    return count == &receiver->accepted ? message : SADDLE_WIRE_NONE;
+    return message;
 }
 
 void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_command_t *command)
 {
-    struct saddle_can_command_t raw;
-    (void)saddle_can_command_unpack(&raw, data, SADDLE_WIRE_LENGTH);
-    command->mode = raw.mode;
-    command->speed_m_s = NUMBER(command_speed, raw.speed);
-    command->heel_strike_rad = NUMBER(command_heel_strike, raw.heel_strike);
+    const uint64_t bits = bits_of(data);
+    command->mode = (uint8_t)CODE_IN(COMMAND_MODE, bits);
+    command->speed_m_s = NUMBER_IN(COMMAND_SPEED, bits);
+    command->heel_strike_rad = NUMBER_IN(COMMAND_HEEL_STRIKE, bits);
 }
 
-static void decode_com(const uint8_t *data, saddle_measurement_t *measurement)
+static void decode_com(uint64_t bits, saddle_measurement_t *measurement)
 {
-    struct saddle_can_measured_com_t raw;
-    (void)saddle_can_measured_com_unpack(&raw, data, SADDLE_WIRE_LENGTH);
-    measurement->com.height_m = NUMBER(measured_com_height, raw.height);
-    measurement->com.velocity_m_s.x = NUMBER(measured_com_vx, raw.vx);
-    measurement->com.velocity_m_s.y = NUMBER(measured_com_vy, raw.vy);
+    measurement->com.height_m = NUMBER_IN(MEASURED_COM_HEIGHT, bits);
+    measurement->com.velocity_m_s.x = NUMBER_IN(MEASURED_COM_VX, bits);
+    measurement->com.velocity_m_s.y = NUMBER_IN(MEASURED_COM_VY, bits);
 }
 
-static void decode_left(const uint8_t *data, saddle_measurement_t *measurement)
+static void decode_left(uint64_t bits, saddle_measurement_t *measurement)
 {
-    struct saddle_can_measured_left_t raw;
-    (void)saddle_can_measured_left_unpack(&raw, data, SADDLE_WIRE_LENGTH);
-    measurement->foot[SADDLE_LEFT].cop_m.x = NUMBER(measured_left_x, raw.x);
-    measurement->foot[SADDLE_LEFT].cop_m.y = NUMBER(measured_left_y, raw.y);
-    measurement->foot[SADDLE_LEFT].contact = raw.contact != 0u;
+    measurement->foot[SADDLE_LEFT].cop_m.x = NUMBER_IN(MEASURED_LEFT_X, bits);
+    measurement->foot[SADDLE_LEFT].cop_m.y = NUMBER_IN(MEASURED_LEFT_Y, bits);
+    measurement->foot[SADDLE_LEFT].contact = CODE_IN(MEASURED_LEFT_CONTACT, bits) != 0u;
 }
 
-static void decode_right(const uint8_t *data, saddle_measurement_t *measurement)
+static void decode_right(uint64_t bits, saddle_measurement_t *measurement)
 {
-    struct saddle_can_measured_right_t raw;
-    (void)saddle_can_measured_right_unpack(&raw, data, SADDLE_WIRE_LENGTH);
-    measurement->foot[SADDLE_RIGHT].cop_m.x = NUMBER(measured_right_x, raw.x);
-    measurement->foot[SADDLE_RIGHT].cop_m.y = NUMBER(measured_right_y, raw.y);
-    measurement->foot[SADDLE_RIGHT].contact = raw.contact != 0u;
+    measurement->foot[SADDLE_RIGHT].cop_m.x = NUMBER_IN(MEASURED_RIGHT_X, bits);
+    measurement->foot[SADDLE_RIGHT].cop_m.y = NUMBER_IN(MEASURED_RIGHT_Y, bits);
+    measurement->foot[SADDLE_RIGHT].contact = CODE_IN(MEASURED_RIGHT_CONTACT, bits) != 0u;
 }
 
 void saddle_wire_decode_measured(saddle_wire_message_t message,
@@ -246,33 +299,24 @@ void saddle_wire_decode_measured(saddle_wire_message_t message,
                                  saddle_measurement_t *measurement)
 {
     if (message == SADDLE_WIRE_MEASURED_COM) {
-        decode_com(data, measurement);
+        decode_com(bits_of(data), measurement);
     } else if (message == SADDLE_WIRE_MEASURED_LEFT) {
-        decode_left(data, measurement);
+        decode_left(bits_of(data), measurement);
     } else if (message == SADDLE_WIRE_MEASURED_RIGHT) {
-        decode_right(data, measurement);
+        decode_right(bits_of(data), measurement);
     }
 }
-
-/** Fill a message, pack it and seal the frame. The generated packers refuse only a short buffer. */
-#define ENCODE(frame, message, id, ...)                                             \
-    do {                                                                            \
-        const struct saddle_can_##message##_t raw = {__VA_ARGS__};                  \
-        (void)saddle_can_##message##_pack((frame)->data, &raw, SADDLE_WIRE_LENGTH); \
-        seal((frame), SADDLE_CAN_##id##_FRAME_ID);                                  \
-    } while (0)
 
 static void encode_com_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
 {
     const bool valid = plan->valid;
-    ENCODE(&frames[0], plan_com, PLAN_COM, .counter = counter,
-           .x = RAW(plan_com_x, valid, plan->com_m.x),
-           .y = RAW(plan_com_y, valid, plan->com_m.y),
-           .z = RAW(plan_com_z, valid, plan->com_m.z));
-    ENCODE(&frames[1], plan_com_velocity, PLAN_COM_VELOCITY, .counter = counter,
-           .vx = RAW(plan_com_velocity_vx, valid, plan->com_velocity_m_s.x),
-           .vy = RAW(plan_com_velocity_vy, valid, plan->com_velocity_m_s.y),
-           .vz = RAW(plan_com_velocity_vz, valid, plan->com_velocity_m_s.z));
+    ENCODE(&frames[0], PLAN_COM, counter,
+           NUMBER(PLAN_COM_X, valid, plan->com_m.x) | NUMBER(PLAN_COM_Y, valid, plan->com_m.y) |
+               NUMBER(PLAN_COM_Z, valid, plan->com_m.z));
+    ENCODE(&frames[1], PLAN_COM_VELOCITY, counter,
+           NUMBER(PLAN_COM_VELOCITY_VX, valid, plan->com_velocity_m_s.x) |
+               NUMBER(PLAN_COM_VELOCITY_VY, valid, plan->com_velocity_m_s.y) |
+               NUMBER(PLAN_COM_VELOCITY_VZ, valid, plan->com_velocity_m_s.z));
 }
 
 static void encode_feet_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
@@ -280,49 +324,49 @@ static void encode_feet_plan(const saddle_plan_t *plan, uint8_t counter, saddle_
     const bool valid = plan->valid;
     const saddle_vec3_t left_m = plan->foot_m[SADDLE_LEFT];
     const saddle_vec3_t right_m = plan->foot_m[SADDLE_RIGHT];
-    ENCODE(&frames[0], plan_left, PLAN_LEFT, .counter = counter,
-           .x = RAW(plan_left_x, valid, left_m.x), .y = RAW(plan_left_y, valid, left_m.y),
-           .z = RAW(plan_left_z, valid, left_m.z));
-    ENCODE(&frames[1], plan_right, PLAN_RIGHT, .counter = counter,
-           .x = RAW(plan_right_x, valid, right_m.x), .y = RAW(plan_right_y, valid, right_m.y),
-           .z = RAW(plan_right_z, valid, right_m.z));
-    ENCODE(&frames[2], plan_swing, PLAN_SWING, .counter = counter,
-           .vx = RAW(plan_swing_vx, valid, plan->swing_velocity_m_s.x),
-           .vy = RAW(plan_swing_vy, valid, plan->swing_velocity_m_s.y),
-           .vz = RAW(plan_swing_vz, valid, plan->swing_velocity_m_s.z));
+    ENCODE(&frames[0], PLAN_LEFT, counter,
+           NUMBER(PLAN_LEFT_X, valid, left_m.x) | NUMBER(PLAN_LEFT_Y, valid, left_m.y) |
+               NUMBER(PLAN_LEFT_Z, valid, left_m.z));
+    ENCODE(&frames[1], PLAN_RIGHT, counter,
+           NUMBER(PLAN_RIGHT_X, valid, right_m.x) | NUMBER(PLAN_RIGHT_Y, valid, right_m.y) |
+               NUMBER(PLAN_RIGHT_Z, valid, right_m.z));
+    ENCODE(&frames[2], PLAN_SWING, counter,
+           NUMBER(PLAN_SWING_VX, valid, plan->swing_velocity_m_s.x) |
+               NUMBER(PLAN_SWING_VY, valid, plan->swing_velocity_m_s.y) |
+               NUMBER(PLAN_SWING_VZ, valid, plan->swing_velocity_m_s.z));
 }
 
 static void encode_step_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
 {
     const bool valid = plan->valid;
-    ENCODE(&frames[0], plan_landing, PLAN_LANDING, .counter = counter,
-           .x = RAW(plan_landing_x, valid, plan->landing_m.x),
-           .y = RAW(plan_landing_y, valid, plan->landing_m.y),
-           .leg_length = RAW(plan_landing_leg_length, valid, plan->leg_length_m));
-    ENCODE(&frames[1], plan_ankle, PLAN_ANKLE, .counter = counter,
-           .toe_off = RAW(plan_ankle_toe_off, valid, plan->toe_off_rad),
-           .heel_strike = RAW(plan_ankle_heel_strike, valid, plan->heel_strike_rad),
-           .speed = RAW(plan_ankle_speed, valid, plan->speed_m_s));
-    ENCODE(&frames[2], plan_step, PLAN_STEP, .counter = counter, .valid = valid,
-           .support = plan->support, .phase = plan->phase,
-           .theta = RAW(plan_step_theta, valid, plan->theta_rad),
-           .step_length = RAW(plan_step_step_length, valid, plan->step_length_m),
-           .step_count = (uint16_t)plan->step_count);
+    ENCODE(&frames[0], PLAN_LANDING, counter,
+           NUMBER(PLAN_LANDING_X, valid, plan->landing_m.x) |
+               NUMBER(PLAN_LANDING_Y, valid, plan->landing_m.y) |
+               NUMBER(PLAN_LANDING_LEG_LENGTH, valid, plan->leg_length_m));
+    ENCODE(&frames[1], PLAN_ANKLE, counter,
+           NUMBER(PLAN_ANKLE_TOE_OFF, valid, plan->toe_off_rad) |
+               NUMBER(PLAN_ANKLE_HEEL_STRIKE, valid, plan->heel_strike_rad) |
+               NUMBER(PLAN_ANKLE_SPEED, valid, plan->speed_m_s));
+    ENCODE(&frames[2], PLAN_STEP, counter,
+           CODE(PLAN_STEP_VALID, valid) | CODE(PLAN_STEP_SUPPORT, plan->support) |
+               CODE(PLAN_STEP_PHASE, plan->phase) |
+               NUMBER(PLAN_STEP_THETA, valid, plan->theta_rad) |
+               NUMBER(PLAN_STEP_STEP_LENGTH, valid, plan->step_length_m) |
+               CODE(PLAN_STEP_STEP_COUNT, plan->step_count));
 }
 
 static void encode_events_plan(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
 {
     const bool valid = plan->valid;
-    ENCODE(&frames[0], plan_events, PLAN_EVENTS, .counter = counter, .mode = plan->mode,
-           .time_to_via_point =
-               RAW(plan_events_time_to_via_point, valid, plan->time_to_via_point_s),
-           .time_to_heel_strike =
-               RAW(plan_events_time_to_heel_strike, valid, plan->time_to_heel_strike_s),
-           .time_to_toe_off = RAW(plan_events_time_to_toe_off, valid, plan->time_to_toe_off_s));
-    ENCODE(&frames[1], plan_pitch, PLAN_PITCH, .counter = counter,
-           .left = RAW(plan_pitch_left, valid, plan->foot_pitch_rad[SADDLE_LEFT]),
-           .right = RAW(plan_pitch_right, valid, plan->foot_pitch_rad[SADDLE_RIGHT]),
-           .knee_flexion = RAW(plan_pitch_knee_flexion, valid, plan->knee_flexion_m));
+    ENCODE(&frames[0], PLAN_EVENTS, counter,
+           CODE(PLAN_EVENTS_MODE, plan->mode) |
+               NUMBER(PLAN_EVENTS_TIME_TO_VIA_POINT, valid, plan->time_to_via_point_s) |
+               NUMBER(PLAN_EVENTS_TIME_TO_HEEL_STRIKE, valid, plan->time_to_heel_strike_s) |
+               NUMBER(PLAN_EVENTS_TIME_TO_TOE_OFF, valid, plan->time_to_toe_off_s));
+    ENCODE(&frames[1], PLAN_PITCH, counter,
+           NUMBER(PLAN_PITCH_LEFT, valid, plan->foot_pitch_rad[SADDLE_LEFT]) |
+               NUMBER(PLAN_PITCH_RIGHT, valid, plan->foot_pitch_rad[SADDLE_RIGHT]) |
+               NUMBER(PLAN_PITCH_KNEE_FLEXION, valid, plan->knee_flexion_m));
 }
 
 static bool holds(const saddle_scores_t *scores, saddle_valid_t result)
@@ -335,21 +379,20 @@ static void encode_scores(const saddle_scores_t *scores, uint32_t faults, uint8_
 {
     const bool step = holds(scores, SADDLE_VALID_STEP);
     const bool gravity = holds(scores, SADDLE_VALID_GRAVITY);
-    ENCODE(&frames[0], scores_step, SCORES_STEP, .counter = counter,
-           .s_pend = RAW(scores_step_s_pend, step, scores->s_pend),
-           .s_jump = RAW(scores_step_s_jump, step, scores->s_jump),
-           .s_sw = RAW(scores_step_s_sw, holds(scores, SADDLE_VALID_S_SW), scores->s_sw));
-    ENCODE(&frames[1], scores_margin, SCORES_MARGIN, .counter = counter,
-           .mos_com = RAW(scores_margin_mos_com, holds(scores, SADDLE_VALID_MOS_COM),
-                          scores->mos_com_m),
-           .mos_xcom = RAW(scores_margin_mos_xcom, holds(scores, SADDLE_VALID_MOS_XCOM),
-                           scores->mos_xcom_m),
-           .v_comp = RAW(scores_margin_v_comp, holds(scores, SADDLE_VALID_V_COMP),
-                         scores->v_comp_m_s));
-    ENCODE(&frames[2], scores_force, SCORES_FORCE, .counter = counter,
-           .gravity_x = RAW(scores_force_gravity_x, gravity, scores->gravity_n.x),
-           .gravity_y = RAW(scores_force_gravity_y, gravity, scores->gravity_n.y),
-           .faults = (uint16_t)faults);
+    ENCODE(&frames[0], SCORES_STEP, counter,
+           NUMBER(SCORES_STEP_S_PEND, step, scores->s_pend) |
+               NUMBER(SCORES_STEP_S_JUMP, step, scores->s_jump) |
+               NUMBER(SCORES_STEP_S_SW, holds(scores, SADDLE_VALID_S_SW), scores->s_sw));
+    ENCODE(
+        &frames[1], SCORES_MARGIN, counter,
+        NUMBER(SCORES_MARGIN_MOS_COM, holds(scores, SADDLE_VALID_MOS_COM), scores->mos_com_m) |
+            NUMBER(SCORES_MARGIN_MOS_XCOM, holds(scores, SADDLE_VALID_MOS_XCOM),
+                   scores->mos_xcom_m) |
+            NUMBER(SCORES_MARGIN_V_COMP, holds(scores, SADDLE_VALID_V_COMP), scores->v_comp_m_s));
+    ENCODE(&frames[2], SCORES_FORCE, counter,
+           NUMBER(SCORES_FORCE_GRAVITY_X, gravity, scores->gravity_n.x) |
+               NUMBER(SCORES_FORCE_GRAVITY_Y, gravity, scores->gravity_n.y) |
+               CODE(SCORES_FORCE_FAULTS, faults));
 }
 
 static void encode_foresight(const saddle_scores_t *scores, const saddle_verdict_t *verdict,
@@ -357,42 +400,43 @@ static void encode_foresight(const saddle_scores_t *scores, const saddle_verdict
 {
     const bool stop = holds(scores, SADDLE_VALID_STOP);
     const bool compared = verdict->compared;
-    ENCODE(&frames[0], scores_energy, SCORES_ENERGY, .counter = counter,
-           .can_stop = scores->can_stop, .on_track = verdict->on_track,
-           .paper_stable = scores->paper_stable,
-           .excess_stop = RAW(scores_energy_excess_stop, stop, scores->excess_stop_j),
-           .excess_track =
-               RAW(scores_energy_excess_track, stop && compared, verdict->excess_track_j));
-    ENCODE(&frames[1], scores_expected, SCORES_EXPECTED, .counter = counter,
-           .ebos_com = RAW(scores_expected_ebos_com, compared, verdict->ebos_com_m),
-           .ebos_xcom = RAW(scores_expected_ebos_xcom, compared, verdict->ebos_xcom_m));
+    ENCODE(&frames[0], SCORES_ENERGY, counter,
+           CODE(SCORES_ENERGY_CAN_STOP, scores->can_stop) |
+               CODE(SCORES_ENERGY_ON_TRACK, verdict->on_track) |
+               CODE(SCORES_ENERGY_PAPER_STABLE, scores->paper_stable) |
+               NUMBER(SCORES_ENERGY_EXCESS_STOP, stop, scores->excess_stop_j) |
+               NUMBER(SCORES_ENERGY_EXCESS_TRACK, stop && compared, verdict->excess_track_j));
+    ENCODE(&frames[1], SCORES_EXPECTED, counter,
+           NUMBER(SCORES_EXPECTED_EBOS_COM, compared, verdict->ebos_com_m) |
+               NUMBER(SCORES_EXPECTED_EBOS_XCOM, compared, verdict->ebos_xcom_m));
 }
 
-static void encode_verdict(const saddle_verdict_t *verdict, uint8_t counter,
-                           saddle_frame_t *frames)
+static void encode_verdict(const saddle_verdict_t *verdict, uint8_t counter, saddle_frame_t *frames)
 {
     const bool compared = verdict->compared;
     const saddle_vec2_t deviation_m = verdict->xcom_deviation_m;
     const saddle_recovery_t *recovery = &verdict->recovery;
     const bool landing = compared && recovery->found;
-    ENCODE(&frames[0], verdict, VERDICT, .counter = counter, .compared = compared,
-           .level = verdict->level, .reason = verdict->reason,
-           .xcom_deviation_x = RAW(verdict_xcom_deviation_x, compared, deviation_m.x),
-           .xcom_deviation_y = RAW(verdict_xcom_deviation_y, compared, deviation_m.y));
-    ENCODE(&frames[1], recovery, RECOVERY, .counter = counter, .found = recovery->found,
-           .stops = recovery->stops, .foot = recovery->foot,
-           .x = RAW(recovery_x, landing, recovery->landing_m.x),
-           .y = RAW(recovery_y, landing, recovery->landing_m.y),
-           .margin = RAW(recovery_margin, compared, recovery->margin_m));
+    ENCODE(&frames[0], VERDICT, counter,
+           CODE(VERDICT_COMPARED, compared) | CODE(VERDICT_LEVEL, verdict->level) |
+               CODE(VERDICT_REASON, verdict->reason) |
+               NUMBER(VERDICT_XCOM_DEVIATION_X, compared, deviation_m.x) |
+               NUMBER(VERDICT_XCOM_DEVIATION_Y, compared, deviation_m.y));
+    ENCODE(&frames[1], RECOVERY, counter,
+           CODE(RECOVERY_FOUND, recovery->found) | CODE(RECOVERY_STOPS, recovery->stops) |
+               CODE(RECOVERY_FOOT, recovery->foot) |
+               NUMBER(RECOVERY_X, landing, recovery->landing_m.x) |
+               NUMBER(RECOVERY_Y, landing, recovery->landing_m.y) |
+               NUMBER(RECOVERY_MARGIN, compared, recovery->margin_m));
 }
 
-static void encode_balance(const saddle_verdict_t *verdict, uint8_t counter,
-                           saddle_frame_t *frame)
+static void encode_balance(const saddle_verdict_t *verdict, uint8_t counter, saddle_frame_t *frame)
 {
     const bool known = verdict->margin_known;
-    ENCODE(frame, balance, BALANCE, .counter = counter, .driver = verdict->driver,
-           .balance_margin = RAW(balance_balance_margin, known, verdict->margin),
-           .caution_below = RAW(balance_caution_below, known, verdict->caution_below));
+    ENCODE(frame, BALANCE, counter,
+           CODE(BALANCE_DRIVER, verdict->driver) |
+               NUMBER(BALANCE_BALANCE_MARGIN, known, verdict->margin) |
+               NUMBER(BALANCE_CAUTION_BELOW, known, verdict->caution_below));
 }
 
 static void encode_learned_walk(const saddle_learned_walk_t *walk, uint8_t counter,
@@ -400,52 +444,55 @@ static void encode_learned_walk(const saddle_learned_walk_t *walk, uint8_t count
 {
     const bool measured = walk->height_m > 0.0f;
     const bool stepped = walk->step_time_s > 0.0f;
-    ENCODE(&frames[0], learned_mean, LEARNED_MEAN, .counter = counter,
-           .vx = RAW(learned_mean_vx, measured, walk->velocity_m_s.x),
-           .vy = RAW(learned_mean_vy, measured, walk->velocity_m_s.y),
-           .height = RAW(learned_mean_height, measured, walk->height_m));
-    ENCODE(&frames[1], learned_step, LEARNED_STEP, .counter = counter,
-           .time = RAW(learned_step_time, stepped, walk->step_time_s),
-           .length = RAW(learned_step_length, stepped, walk->step_length_m),
-           .width = RAW(learned_step_width, stepped, walk->step_width_m));
-    ENCODE(&frames[2], learned_steadiness, LEARNED_STEADINESS, .counter = counter,
-           .ripple = RAW(learned_steadiness_ripple, walk->ripple > 0.0f, walk->ripple),
-           .step_margin = RAW(learned_steadiness_step_margin, stepped, walk->step_margin));
+    ENCODE(&frames[0], LEARNED_MEAN, counter,
+           NUMBER(LEARNED_MEAN_VX, measured, walk->velocity_m_s.x) |
+               NUMBER(LEARNED_MEAN_VY, measured, walk->velocity_m_s.y) |
+               NUMBER(LEARNED_MEAN_HEIGHT, measured, walk->height_m));
+    ENCODE(&frames[1], LEARNED_STEP, counter,
+           NUMBER(LEARNED_STEP_TIME, stepped, walk->step_time_s) |
+               NUMBER(LEARNED_STEP_LENGTH, stepped, walk->step_length_m) |
+               NUMBER(LEARNED_STEP_WIDTH, stepped, walk->step_width_m));
+    ENCODE(&frames[2], LEARNED_STEADINESS, counter,
+           NUMBER(LEARNED_STEADINESS_RIPPLE, walk->ripple > 0.0f, walk->ripple) |
+               NUMBER(LEARNED_STEADINESS_STEP_MARGIN, stepped, walk->step_margin));
 }
 
 static void encode_process(const saddle_wire_health_t *health, uint8_t counter,
                            saddle_frame_t *frames)
 {
     const uint32_t *const age_us = health->input_age_us;
-    ENCODE(&frames[0], timing, TIMING, .counter = counter,
-           .period = RAW(timing_period, true, seconds(health->period_us)),
-           .latency = RAW(timing_latency, true, seconds(health->latency_us)),
-           .latency_max = RAW(timing_latency_max, true, seconds(health->latency_max_us)));
-    ENCODE(&frames[1], received, RECEIVED, .counter = counter,
-           .malformed = limited_u8(health->malformed), .bad_crc = limited_u8(health->bad_crc),
-           .bad_version = limited_u8(health->bad_version),
-           .bad_counter = limited_u8(health->bad_counter), .accepted = (uint16_t)health->accepted);
-    ENCODE(&frames[2], inputs, INPUTS, .counter = counter,
-           .command_source = health->command_source & 3u,
-           .command_age = age_ms(age_us[SADDLE_WIRE_COMMAND]),
-           .com_age = age_ms(age_us[SADDLE_WIRE_MEASURED_COM]),
-           .left_age = age_ms(age_us[SADDLE_WIRE_MEASURED_LEFT]),
-           .right_age = age_ms(age_us[SADDLE_WIRE_MEASURED_RIGHT]));
+    ENCODE(&frames[0], TIMING, counter,
+           NUMBER(TIMING_PERIOD, true, seconds(health->period_us)) |
+               NUMBER(TIMING_LATENCY, true, seconds(health->latency_us)) |
+               NUMBER(TIMING_LATENCY_MAX, true, seconds(health->latency_max_us)));
+    ENCODE(&frames[1], RECEIVED, counter,
+           CODE(RECEIVED_MALFORMED, limited(health->malformed, UINT8_MAX)) |
+               CODE(RECEIVED_BAD_CRC, limited(health->bad_crc, UINT8_MAX)) |
+               CODE(RECEIVED_BAD_VERSION, limited(health->bad_version, UINT8_MAX)) |
+               CODE(RECEIVED_BAD_COUNTER, limited(health->bad_counter, UINT8_MAX)) |
+               CODE(RECEIVED_ACCEPTED, health->accepted));
+    ENCODE(&frames[2], INPUTS, counter,
+           CODE(INPUTS_COMMAND_SOURCE, health->command_source) |
+               CODE(INPUTS_COMMAND_AGE, age_ms(age_us[SADDLE_WIRE_COMMAND])) |
+               CODE(INPUTS_COM_AGE, age_ms(age_us[SADDLE_WIRE_MEASURED_COM])) |
+               CODE(INPUTS_LEFT_AGE, age_ms(age_us[SADDLE_WIRE_MEASURED_LEFT])) |
+               CODE(INPUTS_RIGHT_AGE, age_ms(age_us[SADDLE_WIRE_MEASURED_RIGHT])));
 }
 
 static void encode_health(const saddle_output_t *output, const saddle_wire_health_t *health,
                           uint8_t counter, saddle_frame_t *frame)
 {
-    ENCODE(frame, health, HEALTH, .counter = counter, .status = (uint8_t)output->status,
-           .limits = (uint8_t)output->limits, .wire_version = SADDLE_WIRE_VERSION,
-           .late_ticks = limited_u16(health->late_ticks),
-           .rejected_frames = limited_u16(health->rejected_frames));
+    ENCODE(frame, HEALTH, counter,
+           CODE(HEALTH_STATUS, (uint8_t)output->status) |
+               CODE(HEALTH_LIMITS, (uint8_t)output->limits) |
+               CODE(HEALTH_WIRE_VERSION, SADDLE_WIRE_VERSION) |
+               CODE(HEALTH_LATE_TICKS, limited(health->late_ticks, UINT16_MAX)) |
+               CODE(HEALTH_REJECTED_FRAMES, limited(health->rejected_frames, UINT16_MAX)));
 }
 
 void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_health_t *health,
                                uint8_t counter, saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES])
 {
-    counter &= COUNTER_MASK;
     encode_com_plan(&output->plan, counter, &frames[0]);
     encode_feet_plan(&output->plan, counter, &frames[2]);
     encode_step_plan(&output->plan, counter, &frames[5]);
@@ -462,11 +509,11 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
 void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,
                                 saddle_frame_t *frame)
 {
-    ENCODE(frame, command, COMMAND, .counter = counter & COUNTER_MASK,
-           .mode = command->mode < 15u ? command->mode : 15u,
-           .speed = RAW(command_speed, true, command->speed_m_s),
-           .heel_strike = RAW(command_heel_strike, true, command->heel_strike_rad),
-           .wire_version = SADDLE_WIRE_VERSION);
+    ENCODE(frame, COMMAND, counter,
+           CODE(COMMAND_MODE, command->mode < 15u ? command->mode : 15u) |
+               NUMBER(COMMAND_SPEED, true, command->speed_m_s) |
+               NUMBER(COMMAND_HEEL_STRIKE, true, command->heel_strike_rad) |
+               CODE(COMMAND_WIRE_VERSION, SADDLE_WIRE_VERSION));
 }
 
 void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uint8_t counter,
@@ -474,18 +521,17 @@ void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uin
 {
     const saddle_vec2_t left_m = measurement->foot[SADDLE_LEFT].cop_m;
     const saddle_vec2_t right_m = measurement->foot[SADDLE_RIGHT].cop_m;
-    counter &= COUNTER_MASK;
-    ENCODE(&frames[0], measured_com, MEASURED_COM, .counter = counter,
-           .height = RAW(measured_com_height, true, measurement->com.height_m),
-           .vx = RAW(measured_com_vx, true, measurement->com.velocity_m_s.x),
-           .vy = RAW(measured_com_vy, true, measurement->com.velocity_m_s.y));
-    ENCODE(&frames[1], measured_left, MEASURED_LEFT, .counter = counter,
-           .contact = measurement->foot[SADDLE_LEFT].contact,
-           .x = RAW(measured_left_x, true, left_m.x), .y = RAW(measured_left_y, true, left_m.y));
-    ENCODE(&frames[2], measured_right, MEASURED_RIGHT, .counter = counter,
-           .contact = measurement->foot[SADDLE_RIGHT].contact,
-           .x = RAW(measured_right_x, true, right_m.x),
-           .y = RAW(measured_right_y, true, right_m.y));
+    ENCODE(&frames[0], MEASURED_COM, counter,
+           NUMBER(MEASURED_COM_HEIGHT, true, measurement->com.height_m) |
+               NUMBER(MEASURED_COM_VX, true, measurement->com.velocity_m_s.x) |
+               NUMBER(MEASURED_COM_VY, true, measurement->com.velocity_m_s.y));
+    ENCODE(&frames[1], MEASURED_LEFT, counter,
+           CODE(MEASURED_LEFT_CONTACT, measurement->foot[SADDLE_LEFT].contact) |
+               NUMBER(MEASURED_LEFT_X, true, left_m.x) | NUMBER(MEASURED_LEFT_Y, true, left_m.y));
+    ENCODE(&frames[2], MEASURED_RIGHT, counter,
+           CODE(MEASURED_RIGHT_CONTACT, measurement->foot[SADDLE_RIGHT].contact) |
+               NUMBER(MEASURED_RIGHT_X, true, right_m.x) |
+               NUMBER(MEASURED_RIGHT_Y, true, right_m.y));
 }
 
 void saddle_wire_demand_codes(saddle_wire_receiver_t *receiver,
@@ -517,13 +563,15 @@ bool saddle_wire_session_is_over(const saddle_wire_receiver_t *receiver,
 void saddle_wire_encode_session(const saddle_wire_receiver_t *receiver, uint8_t counter,
                                 saddle_frame_t *frame)
 {
-    ENCODE(frame, session, SESSION, .counter = counter & COUNTER_MASK,
-           .session = receiver->guard.session, .freshness = receiver->guard.freshness);
+    ENCODE(frame, SESSION, counter,
+           CODE(SESSION_SESSION, receiver->guard.session) |
+               CODE(SESSION_FRESHNESS, receiver->guard.freshness));
 }
 
 void saddle_wire_encode_code(const saddle_cmac_key_t *key, uint32_t session, uint16_t freshness,
                              const saddle_frame_t *command, saddle_frame_t *frame)
 {
-    ENCODE(frame, command_code, COMMAND_CODE, .counter = saddle_wire_counter(command->data),
-           .freshness = freshness, .code = code_of(key, session, freshness, command->data));
+    ENCODE(frame, COMMAND_CODE, saddle_wire_counter(command->data),
+           CODE(COMMAND_CODE_FRESHNESS, freshness) |
+               CODE(COMMAND_CODE_CODE, code_of(key, session, freshness, command->data)));
 }

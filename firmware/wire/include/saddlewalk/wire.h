@@ -1,8 +1,8 @@
 /**
  * Saddlewalk on CAN: bytes to structs and back. Knows no bus, clock, heap or global.
  *
- * saddlewalk.dbc is the only source of identifiers, positions and scales; the code that cantools
- * writes from it does the packing. Its VERSION is SADDLE_WIRE_VERSION, one more with every change of
+ * saddlewalk.dbc is the only source of identifiers, positions and scales; the constants that
+ * tools/wire_signals.py writes from it do the packing. Its VERSION is SADDLE_WIRE_VERSION, one more with every change of
  * the bits or of their meaning: a COMMAND of another version is refused. This layer adds what a DBC cannot say:
  *
  *     byte 0      CRC-8 SAE J1850 over the identifier, low byte first, then bytes 1 to 7
@@ -13,9 +13,9 @@
  * of the range, never wrapped. A number that is not finite, or whose result is not valid, is sent
  * as -32768, not available, and received as NaN, which saddle_tick() reports as a fault.
  *
- * No pointer is kept. Every function is re-entrant and takes constant time, mostly that of the
- * CRC: 72 shifts a frame; where codes are demanded, a COMMAND takes one block of AES more. Stack
- * under 300 bytes. Of the C library it wants memset() and roundf().
+ * No pointer is kept. Every function is re-entrant and takes a bounded time; where codes are
+ * demanded, a COMMAND takes one block of AES more. Stack under 300 bytes. It calls nothing of the C
+ * library.
  *
  *     on a frame:  switch (saddle_wire_accept(&receiver, id, data, length)) {
  *                  case SADDLE_WIRE_NONE: break;
