@@ -14,8 +14,8 @@
  * as -32768, not available, and received as NaN, which saddle_tick() reports as a fault.
  *
  * No pointer is kept. Every function is re-entrant and takes a bounded time; where codes are
- * demanded, a COMMAND takes one block of AES more. Stack under 300 bytes. It calls nothing of the C
- * library.
+ * demanded, a COMMAND takes one block of AES more. Stack under 300 bytes. Of the C library it needs
+ * nothing, unless the compiler makes memcpy() of a copy.
  *
  *     on a frame:  switch (saddle_wire_accept(&receiver, id, data, length)) {
  *                  case SADDLE_WIRE_NONE: break;
