@@ -18,8 +18,8 @@
 
 /** A frame's bytes 0 to 7 are one number of 64 bits, byte 0 the lowest. These are a signal's part of
  *  it: of a number, or of a count or code, whose higher bits are dropped. */
-#define NUMBER(signal, valid, value)                                    \
-    ((uint64_t)raw_of((valid), (value), SIGNALS[SIGNAL_##signal].scale) \
+#define NUMBER(signal, valid, value)                                           \
+    ((uint64_t)raw_of((valid), (value), 0.5f * SIGNALS[SIGNAL_##signal].scale) \
      << SIGNALS[SIGNAL_##signal].start)
 #define CODE(signal, value) \
     ((uint64_t)((value) & mask_of(SIGNAL_##signal)) << SIGNALS[SIGNAL_##signal].start)
@@ -43,20 +43,21 @@ static uint32_t mask_of(size_t signal)
     return UINT32_MAX >> (32u - SIGNALS[signal].length);
 }
 
-/** The nearest whole number of steps, ties away from 0, in 16 bits. What is beyond the range never
- *  becomes an integer, nor does NaN. Inlined at each of its calls it would double the wire. */
-static SADDLE_NOINLINE uint32_t raw_of(bool valid, float value, float step)
+/** The nearest whole number of steps, ties away from 0, in 16 bits. Neither NaN nor what is beyond
+ *  the range becomes an integer. Inlined at each of its calls it would double the wire. */
+static SADDLE_NOINLINE uint32_t raw_of(bool valid, float value, float half_step)
 {
-    const float halves = value / (0.5f * step);
-    int32_t raw = NOT_AVAILABLE;
-    if (valid && __builtin_fabsf(halves) <= HALVES_MAX) {
-        const int32_t whole = (int32_t)halves;
-        return (uint32_t)(whole + (whole >= 0)) >> 1 & UINT16_MAX;
+    const float halves = __builtin_fabsf(value / half_step);
+    uint32_t steps = INT16_MAX;
+    if (!valid || halves != halves) {
+        return (uint16_t)NOT_AVAILABLE;
     }
-    if (valid && is_finite(value)) {
-        raw = value > 0.0f ? INT16_MAX : -INT16_MAX;
+    if (halves <= HALVES_MAX) {
+        steps = ((uint32_t)halves + 1u) / 2u;
+    } else if (!is_finite(value)) {
+        return (uint16_t)NOT_AVAILABLE;
     }
-    return (uint32_t)raw & UINT16_MAX;
+    return (value < 0.0f ? 0u - steps : steps) & UINT16_MAX;
 }
 
 static float number_of(const signal_t *signal, uint64_t bits)
@@ -95,12 +96,16 @@ uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length)
     return (uint8_t)(crc ^ 0xFFu);
 }
 
-/** The same over an identifier and the seven bytes above byte 0. */
-static uint32_t frame_crc(uint32_t id, uint64_t bits)
+static uint32_t crc_of_id(uint32_t id)
+{
+    return crc_after(crc_after(0xFFu, id), id >> 8);
+}
+
+/** CRC of a frame: of its identifier, then of the seven bytes above byte 0. */
+static uint32_t frame_crc(uint32_t id_crc, uint64_t bits)
 {
     const uint32_t low = (uint32_t)bits, high = (uint32_t)(bits >> 32);
-    uint32_t crc = crc_after(crc_after(0xFFu, id), id >> 8);
-    crc = crc_after(crc_after(crc_after(crc, low >> 8), low >> 16), low >> 24);
+    uint32_t crc = crc_after(crc_after(crc_after(id_crc, low >> 8), low >> 16), low >> 24);
     crc = crc_after(crc_after(crc, high), high >> 8);
     return crc_after(crc_after(crc, high >> 16), high >> 24) ^ 0xFFu;
 }
@@ -124,16 +129,19 @@ static void put_word(uint8_t *bytes, uint32_t word)
     bytes[3] = (uint8_t)(word >> 24);
 }
 
-/** A whole frame; its bits have no CRC yet. */
-static void seal(saddle_frame_t *frame, uint16_t id, uint64_t bits)
+/** The bits of a frame, which have no CRC yet, as its bytes. */
+static void seal(uint8_t *data, uint32_t id_crc, uint64_t bits)
 {
-    frame->id = id;
-    put_word(frame->data, (uint32_t)bits | frame_crc(id, bits));
-    put_word(frame->data + 4, (uint32_t)(bits >> 32));
+    put_word(data, (uint32_t)bits | frame_crc(id_crc, bits));
+    put_word(data + 4, (uint32_t)(bits >> 32));
 }
 
-#define ENCODE(frame, message, counter, signals) \
-    seal((frame), MESSAGE_##message, CODE(message##_COUNTER, (counter)) | (signals))
+#define ENCODE(frame, message, counter, signals)              \
+    do {                                                      \
+        (frame)->id = MESSAGE_##message;                      \
+        seal((frame)->data, crc_of_id(MESSAGE_##message),     \
+             CODE(message##_COUNTER, (counter)) | (signals)); \
+    } while (0)
 
 uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH])
 {
@@ -231,7 +239,7 @@ static uint32_t *count_of(saddle_wire_receiver_t *receiver, saddle_wire_message_
 {
     const uint64_t bits = bits_of(data);
     const bool commands = message == SADDLE_WIRE_COMMAND;
-    if ((bits & 0xFFu) != frame_crc(id, bits)) {
+    if ((bits & 0xFFu) != frame_crc(crc_of_id(id), bits)) {
         return &receiver->bad_crc;
     }
     if (commands && !speaks_our_version(receiver, bits)) {
