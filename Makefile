@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets cross-compiler samples neighbours format clean help
+.PHONY: build demo amalgamation controller test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets cross-compiler samples neighbours format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -70,9 +70,17 @@ samples: .venv/installed-samples ## recorded walks, for saddlewalk replay --samp
 
 neighbours: .venv/installed-neighbours ## the walking QPs that saddlewalk bench stands beside the core
 
-format: .venv/installed-test ## lay out the Python code
-	@$(BIN)/ruff check --fix .
-	@$(BIN)/ruff format .
+format: .venv/installed-test ## lay out the Python and C code
+	@$(BIN)/ruff check --quiet --fix .
+	@$(BIN)/ruff format --quiet .
+	@git ls-files '*.c' '*.h' | xargs $(BIN)/clang-format -i
+
+lint: build/build.ninja .venv/installed-test ## ruff, and clang-tidy over the firmware; make test checks layout and types
+	@$(BIN)/ruff check --quiet .
+	@$(BIN)/ruff format --quiet --check .
+	@$(BIN)/ninja -C build --quiet
+	@git ls-files 'firmware/*.c' | grep -v -e /mps2/ -e /port_arduino/ | xargs -n 4 -P $$(nproc) \
+		$(BIN)/clang-tidy -p build --quiet
 
 clean: ## remove all that was built, and the virtual environment
 	rm -rf .venv build build-* out

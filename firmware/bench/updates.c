@@ -19,6 +19,8 @@ typedef struct {
 
 static bool read_call(call_t *call)
 {
+    /* The numbers are those that saddlewalk-bench-calls printed. */
+    /* NOLINTNEXTLINE(bugprone-unchecked-string-to-number-conversion,cert-err34-c) */
     return scanf("%d %u %d %f", &call->walk, &call->update, &call->function, &call->argument) == 4;
 }
 

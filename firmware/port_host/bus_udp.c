@@ -84,7 +84,7 @@ static bool open_receiving(const saddle_bus_t *bus, const interface_t *interface
     const int yes = 1, no = 0, buffer = RECEIVE_BUFFER_BYTES, fd = bus->receive_fd;
     const struct ip_mreqn membership = {.imr_multiaddr = bus->group.sin_addr,
                                         .imr_ifindex = interface->index};
-    return set(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) &&
+    return fd >= 0 && set(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) &&
            set(fd, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer) && saddle_stamp(fd) &&
            set(fd, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof no) &&
            bind(fd, (const struct sockaddr *)&bus->group, sizeof bus->group) == 0 &&
@@ -98,7 +98,7 @@ static bool open_sending(saddle_bus_t *bus, const interface_t *interface)
     const struct ip_mreqn leaving = {.imr_ifindex = interface->index};
     socklen_t size = sizeof bus->own;
     bus->own = (struct sockaddr_in){.sin_family = AF_INET, .sin_addr = interface->address};
-    return set(fd, IPPROTO_IP, IP_MULTICAST_TTL, &hops, sizeof hops) &&
+    return fd >= 0 && set(fd, IPPROTO_IP, IP_MULTICAST_TTL, &hops, sizeof hops) &&
            set(fd, IPPROTO_IP, IP_MULTICAST_IF, &leaving, sizeof leaving) &&
            bind(fd, (const struct sockaddr *)&bus->own, size) == 0 &&
            getsockname(fd, (struct sockaddr *)&bus->own, &size) == 0;

@@ -8,16 +8,18 @@
 #include <string.h>
 #include <unistd.h>
 
-/** LCM explains at length on standard error why it cannot start; the caller does so in one line. */
+/** Without LCM's long messages on standard error: the caller prints one line. */
 static lcm_t *create_silently(const char *url)
 {
-    const int standard_error = dup(STDERR_FILENO);
-    const int nowhere = open("/dev/null", O_WRONLY);
-    dup2(nowhere, STDERR_FILENO);
+    const int saved = dup(STDERR_FILENO);
+    const int null_device = open("/dev/null", O_WRONLY);
+    const bool silenced = saved >= 0 && null_device >= 0 && dup2(null_device, STDERR_FILENO) >= 0;
     lcm_t *lcm = lcm_create(url);
-    dup2(standard_error, STDERR_FILENO);
-    close(nowhere);
-    close(standard_error);
+    if (silenced) {
+        dup2(saved, STDERR_FILENO);
+    }
+    close(null_device);
+    close(saved);
     return lcm;
 }
 

@@ -106,7 +106,7 @@ static void print_start(const saddle_options_t *options, const saddle_runner_t *
     fflush(stdout);
 }
 
-/** 32 hexadecimal digits, in a file that nobody else may read. */
+/** 32 hexadecimal digits, in a file that only its owner may read. */
 static bool read_key(const char *path, uint8_t key[SADDLE_CMAC_LENGTH])
 {
     struct stat about;
@@ -114,6 +114,8 @@ static bool read_key(const char *path, uint8_t key[SADDLE_CMAC_LENGTH])
     bool good = file != NULL && fstat(fileno(file), &about) == 0 &&
                 (about.st_mode & (S_IRWXG | S_IRWXO)) == 0;
     for (size_t i = 0; good && i < SADDLE_CMAC_LENGTH; ++i) {
+        /* Two digits do not overflow. */
+        /* NOLINTNEXTLINE(bugprone-unchecked-string-to-number-conversion,cert-err34-c) */
         good = fscanf(file, "%2hhx", &key[i]) == 1;
     }
     if (file != NULL) {

@@ -15,7 +15,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Self
+from typing import IO, Any, Self
 
 from saddlewalk.errors import UserError
 from saddlewalk.printable import printable
@@ -37,7 +37,7 @@ def own_descriptor(path: str | Path) -> int | None:
 
 
 @contextlib.contextmanager
-def atomic_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO]:
+def atomic_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO[Any]]:
     """A file that is at `path` once all is written; "-": standard output.
 
     What is no ordinary file, or is open already, is written to and not replaced. Raises UserError,
@@ -140,7 +140,7 @@ class RunFolder:
 
 
 @contextlib.contextmanager
-def _open(path: Path, mode: str) -> Iterator[IO]:
+def _open(path: Path, mode: str) -> Iterator[IO[Any]]:
     newline = None if "b" in mode else ""
     descriptor = own_descriptor(path)
     if descriptor is not None:
@@ -217,5 +217,5 @@ def _uninterrupted() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-    for number in came[:1]:
-        signal.raise_signal(number)
+    if came:
+        signal.raise_signal(came[0])

@@ -100,9 +100,9 @@ class Core:
 
 def _fill(target: Any, measurement: Measurement) -> None:
     com = target.com
-    known = measurement.com_height_m is not None and measurement.com_velocity_m_s is not None
-    com.age_us = 0 if known else AGE_NEVER_US
-    if known:
+    com.age_us = AGE_NEVER_US
+    if measurement.com_height_m is not None and measurement.com_velocity_m_s is not None:
+        com.age_us = 0
         com.height_m = measurement.com_height_m
         com.velocity_m_s.x, com.velocity_m_s.y = measurement.com_velocity_m_s
     feet = (

@@ -87,7 +87,7 @@ def render(heard: Heard) -> RenderableType:
     level, words = announced(heard)
     style = LEVEL_STYLES.get(level, "")
     current = heard.still_true()
-    parts = [
+    parts: list[RenderableType] = [
         Text(banner(level.upper()), style=f"bold {style}"),
         Text(f"level: {level}{words and f', {words}'}", style="bold"),
         _margin_row(current.balance),
@@ -112,7 +112,7 @@ def summary(heard: Heard) -> str:
         (
             f"{level.upper()}{words and f': {words}'}",
             f"margin {margin(current.balance)}, driven by: {driver(current.balance)}",
-            "  ".join(f"{label} {_number(*of)}" for label, *of in _numbers(current)),
+            "  ".join(f"{label} {_number(of, name)}" for label, of, name in _numbers(current)),
             f"recovery: {recovery_step(current.verdict)}",
             f"energy: {energy(current.verdict)}",
             gait(current.plan),
@@ -133,14 +133,14 @@ def announced(heard: Heard) -> tuple[str, str]:
     return level_name(heard.verdict.level), reason_words(heard.verdict.reason)
 
 
-def margin(balance) -> str:
+def margin(balance: Any) -> str:
     """The margin that decides the level, and its limits."""
     if balance is None or math.isnan(balance.margin):
         return NOT_AVAILABLE
     return f"{balance.margin:+.3f} (unstable at 0, caution at {balance.caution_below:.3f})"
 
 
-def driver(balance) -> str:
+def driver(balance: Any) -> str:
     """The largest part of the departure from the wearer's own walk, in words."""
     if balance is None or math.isnan(balance.margin):
         return NOT_AVAILABLE
@@ -151,7 +151,7 @@ def waiting(silent_s: float) -> str:
     return f"no message from the firmware for {silent_s:.1f} s"
 
 
-def gait(plan) -> str:
+def gait(plan: Any) -> str:
     """Where in the stride the plan is."""
     if plan is None:
         return "plan: none yet"
@@ -168,12 +168,12 @@ def gait(plan) -> str:
     )
 
 
-def _heel_strike(plan) -> str:
+def _heel_strike(plan: Any) -> str:
     foreseen = plan.time_to_heel_strike_s < TIME_MAX_S
     return f"heel strike in {plan.time_to_heel_strike_s:.2f} s" if foreseen else "no heel strike"
 
 
-def energy(verdict) -> str:
+def energy(verdict: Any) -> str:
     """What there is beyond a stop and beyond the plan, and whether the ankles can take it."""
     if verdict is None:
         return NOT_AVAILABLE
@@ -189,7 +189,7 @@ def energy(verdict) -> str:
     )
 
 
-def recovery_step(verdict) -> str:
+def recovery_step(verdict: Any) -> str:
     """Where to put which foot, or that no place within reach will do."""
     if verdict is None or not verdict.compared:
         return NOT_AVAILABLE
@@ -205,7 +205,7 @@ def recovery_step(verdict) -> str:
     )
 
 
-def condition(health) -> str:
+def condition(health: Any) -> str:
     """Whether the firmware keeps its time and gets good data."""
     if health is None:
         return "health: none yet"
@@ -231,7 +231,7 @@ def condition(health) -> str:
     return "health: " + ", ".join(parts) + safe_stop(health)
 
 
-def safe_stop(health) -> str:
+def safe_stop(health: Any) -> str:
     """That the firmware ends the walk by itself, and for want of what; empty otherwise."""
     if not health.limits >> LIMITS.index("SAFE_STOP") & 1:
         return ""
@@ -241,13 +241,13 @@ def safe_stop(health) -> str:
     return f"; SAFE STOP, the walk ends: {why}"
 
 
-def _numbers(current: Heard) -> list[tuple[str, object, str]]:
+def _numbers(current: Heard) -> list[tuple[str, Any, str]]:
     """(label, message, field) of what is shown as a bar beside or below the margin."""
     named = [(current.scores, SCORES), (current.scores, MARGINS), (current.verdict, EXPECTED)]
     return [(label, message, name) for message, names in named for label, name in names]
 
 
-def _margin_row(balance) -> Table:
+def _margin_row(balance: Any) -> Table:
     row = Table.grid(padding=(0, 1))
     known = balance is not None and not math.isnan(balance.margin)
     bar = balance_bar(balance.margin, balance.caution_below) if known else _no_bar(BALANCE_CELLS)
@@ -308,11 +308,11 @@ def margin_bar(value_m: float) -> Text:
     return Text(f"{left}│{right}", style="cyan")
 
 
-def _value(message, name: str) -> float:
+def _value(message: Any, name: str) -> float:
     return math.nan if message is None else getattr(message, name)
 
 
-def _number(message, name: str) -> str:
+def _number(message: Any, name: str) -> str:
     value = _value(message, name)
     if math.isnan(value):
         return NOT_AVAILABLE

@@ -83,7 +83,7 @@ def check_files(parser: argparse.ArgumentParser, args: argparse.Namespace) -> No
         role = getattr(action, "role", None)
         if role is None:
             continue
-        option = action.option_strings[0] if action.option_strings else action.metavar
+        option = action.option_strings[0] if action.option_strings else str(action.metavar)
         if role.output is None:
             inputs += _inputs(option, getattr(args, action.dest))
         else:

@@ -1,4 +1,7 @@
-"""What a status_t says about the host process, in words."""
+"""A status_t of the host process as text."""
+
+from collections.abc import Sequence
+from typing import Any
 
 LINKS = ("unused", "up", "DOWN", "BUS-OFF")
 SOURCES = ("none", "CAN", "LCM")
@@ -19,15 +22,15 @@ DROPPED = {
     "LCM messages": "messages_not_sent",
 }
 LONG_US = 10_000_000  # an age from here on is given in seconds
-USUAL = 0.99  # the share of ticks whose latency is told beside the worst
+USUAL = 0.99  # the share of ticks whose latency is shown beside the worst
 
 
-def lines(status) -> list[str]:
+def lines(status: Any) -> list[str]:
     """Timing, inputs and transports; nothing while no status_t has come."""
     return [timing(status), inputs(status), transports(status)] if status else []
 
 
-def timing(status) -> str:
+def timing(status: Any) -> str:
     """How the ticks keep their time."""
     below_us = latency_below_us(status.latencies, USUAL)
     usual = "" if below_us is None else f"{USUAL:.0%} below {below_us / 1000:g} ms, "
@@ -43,7 +46,7 @@ def timing(status) -> str:
     return ", ".join(parts) + (", memory locked" if status.memory_locked else "")
 
 
-def latency_below_us(latencies, share: float) -> int | None:
+def latency_below_us(latencies: Sequence[int], share: float) -> int | None:
     """The end of the bin below which that share of the ticks lies; None if it is the last's."""
     counted = 0
     for exponent, ticks in enumerate(latencies[:-1], start=1):
@@ -53,7 +56,7 @@ def latency_below_us(latencies, share: float) -> int | None:
     return None
 
 
-def inputs(status) -> str:
+def inputs(status: Any) -> str:
     """Who commands, how old each input is, and what was rejected."""
     ages = (
         ("CoM", status.com_age_us),
@@ -71,7 +74,7 @@ def inputs(status) -> str:
     )
 
 
-def commands(status) -> str:
+def commands(status: Any) -> str:
     """Who commands and since when not; after a walk has ended without commands, nobody does."""
     if status.command_age_us == status.NEVER:
         return "no commands yet"
@@ -81,7 +84,7 @@ def commands(status) -> str:
     return f"commands from {_name(SOURCES, status.command_source)} {age}"
 
 
-def transports(status) -> str:
+def transports(status: Any) -> str:
     """Whether CAN and LCM carry, and what was dropped."""
     can = f"CAN by {_name(TRANSPORTS, status.can_transport)}"
     parts = [
@@ -99,19 +102,19 @@ def _link(name: str, state: int, losses: int) -> str:
     return f"{name} {_name(LINKS, state)}{lost}"
 
 
-def _other_version(status) -> list[str]:
+def _other_version(status: Any) -> list[str]:
     if not status.frames_bad_version:
         return []
     return [f"wire version {status.other_version} refused, this firmware has {status.wire_version}"]
 
 
-def _age(status, age_us: int) -> str:
+def _age(status: Any, age_us: int) -> str:
     if age_us == status.NEVER:
         return "never"
     return f"{age_us / 1e3:.0f} ms ago" if age_us < LONG_US else f"{age_us / 1e6:.0f} s ago"
 
 
-def _counts(status, names: dict[str, str]) -> list[str]:
+def _counts(status: Any, names: dict[str, str]) -> list[str]:
     return [
         f"{getattr(status, field)} {words}"
         for words, field in names.items()

@@ -9,7 +9,7 @@ import sys
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TextIO
+from typing import IO, Any, TextIO
 
 from saddlewalk.atomic_write import atomic_file
 from saddlewalk.errors import UserError
@@ -31,7 +31,7 @@ def write_table(out: str | None, columns: Sequence[str], rows: Iterable[Sequence
         _write_rows(file, columns, rows)
 
 
-def _write_rows(file: TextIO, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+def _write_rows(file: IO[Any], columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     rows = iter(rows)
     first = list(itertools.islice(rows, 1))  # input that is bad from the start gives no header
     writer = csv.writer(file, lineterminator="\n")

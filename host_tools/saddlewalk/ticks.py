@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from typing import Protocol
 
 import can
 
@@ -27,6 +28,16 @@ def scores_of(messages: Messages) -> Signals:
     return {name: value for part in SCORE_MESSAGES for name, value in messages[part].items()}
 
 
+class FrameBus(Protocol):
+    """What a walk needs of a bus: `can.BusABC` is one."""
+
+    channel_info: str
+
+    def send(self, frame: can.Message, /) -> None: ...
+
+    def recv(self, timeout: float | None = None) -> can.Message | None: ...
+
+
 class TickReader:
     """Gathers the frames of a tick, of which HEALTH is the last."""
 
@@ -50,7 +61,7 @@ class TickReader:
 
 
 def next_tick(
-    bus: can.BusABC, feed: Callable[[can.Message], Messages | None], within_s: float
+    bus: FrameBus, feed: Callable[[can.Message], Messages | None], within_s: float
 ) -> Messages | None:
     """The next tick that `feed` makes of the bus's frames; None if none is whole in time.
 

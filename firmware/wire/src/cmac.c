@@ -52,7 +52,7 @@ static void expand_key(uint8_t round_keys[BLOCK * (ROUNDS + 1u)], const uint8_t 
 {
     uint8_t constant = 1;
     copy(round_keys, key);
-    for (size_t i = BLOCK; i < BLOCK * (ROUNDS + 1u); i += 4u) {
+    for (size_t i = BLOCK; i < (size_t)BLOCK * (ROUNDS + 1u); i += 4u) {
         const bool begins = i % BLOCK == 0u;
         for (size_t k = 0; k < 4u; ++k) {
             const uint8_t before = round_keys[i - 4u + (begins ? (k + 1u) % 4u : k)];
@@ -94,10 +94,10 @@ static void encrypt(const uint8_t *round_keys, uint8_t *block)
     for (size_t round = 1; round < ROUNDS; ++round) {
         substitute_and_shift(block);
         mix_columns(block);
-        add(block, round_keys + BLOCK * round);
+        add(block, round_keys + (size_t)BLOCK * round);
     }
     substitute_and_shift(block);
-    add(block, round_keys + BLOCK * ROUNDS);
+    add(block, round_keys + (size_t)BLOCK * ROUNDS);
 }
 
 /** A subkey is the one before it times x, the block taken as one number with the first byte high. */

@@ -4,6 +4,7 @@ import platform
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from saddlewalk.benchmark.instructions import ALL_TICKS, Group
 from saddlewalk.benchmark.timing import (
@@ -72,7 +73,8 @@ class Report:
         return fastest * core.median_s(ONE) / (core.median_s(TEN) / len(instants(TEN)))
 
     def aims(self) -> list[Aim]:
-        core_over_floor = 1 / self.ratio(FLOOR, TEN)
+        floor = self.ratio(FLOOR, TEN)
+        core_over_floor = None if floor is None else 1 / floor
         found = {group.name: group for group in self.groups}
         every = found.get(ALL_TICKS)
         return [
@@ -86,19 +88,19 @@ class Report:
                 "instructions of the median tick / of the median floor",
                 2,
                 False,
-                every and every.median / every.floor,
+                every.median / every.floor if every and every.floor else None,
             ),
             Aim(
                 "instructions of the slowest tick / of the median",
                 1.5,
                 False,
-                every and every.most / every.median,
+                every.most / every.median if every else None,
             ),
         ]
 
     def lines(self) -> Iterator[str]:
         yield f"A walk at {SPEED_M_S} m/s, planned every {round(TICK_S * 1e3)} ms with scores,"
-        yield f"gravity and margins; {self.rounds} rounds in turns on {processor()}"
+        yield f"gravity and margins; {self.rounds} rounds, interleaved, on {processor()}"
         yield ""
         heads = "".join(
             f" | {_strides(strides):>10} {'most':>9} {'/ core':>7}" for strides in HORIZONS
@@ -134,7 +136,7 @@ class Report:
                 f"{group.most:8,} {floor:>8}"
             )
 
-    def as_dict(self) -> dict:
+    def as_dict(self) -> dict[str, Any]:
         return {
             "processor": processor(),
             "speed_m_s": SPEED_M_S,
@@ -146,7 +148,7 @@ class Report:
             "aims": [{**asdict(aim), "met": aim.met} for aim in self.aims()],
         }
 
-    def _timing_dict(self, timing: Timing) -> dict:
+    def _timing_dict(self, timing: Timing) -> dict[str, Any]:
         if timing.missing is not None:
             return {"name": timing.name, "missing": timing.missing}
         horizons = {
@@ -164,7 +166,9 @@ def _strides(count: int) -> str:
     return "1 stride" if count == 1 else f"{count} strides"
 
 
-def _ratio(value: float) -> str:
+def _ratio(value: float | None) -> str:
+    if value is None:
+        return "-"
     return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
 
 

@@ -150,7 +150,9 @@ def _numpy(at_once: bool) -> Run:
 
 def _octave(at_once: bool) -> Run:
     octave = Octave()
-    return lambda strides: octave.seconds(SPEED_M_S, HEEL_STRIKE_RAD, instants(strides), at_once)
+    return lambda strides: octave.seconds(
+        SPEED_M_S, HEEL_STRIKE_RAD, instants(strides).tolist(), at_once
+    )
 
 
 def preview(strides: int) -> Preview:

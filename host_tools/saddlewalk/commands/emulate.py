@@ -186,12 +186,13 @@ def events_printer(wearer: "Wearer") -> Any:
     class Events(Observer):
         def __init__(self) -> None:
             self._due = sorted(wearer.pushes, key=lambda push: push.time_s)
-            self._mode, self._fallen = None, False
+            self._mode: int | None = None
+            self._fallen = False
 
         def tick(self, tick: Any, wearer: "Wearer") -> None:
             if tick.plan and tick.plan.mode != self._mode:
                 self._mode = tick.plan.mode
-                self._tell(tick, MODES[self._mode])
+                self._tell(tick, MODES[tick.plan.mode])
             while self._due and self._due[0].time_s < tick.time_s:
                 self._tell(tick, push_words(self._due.pop(0)))
             if wearer.fallen and not self._fallen:

@@ -88,7 +88,7 @@ def _row(recording: "Recording", speed_m_s: float, name: str, found: "Deviation"
     return [recording.source, speed_m_s, found.steps, name, *numbers, int(found.limited)]
 
 
-def _table(rows: list[list]) -> Any:
+def _table(rows: list[list[Any]]) -> Any:
     from rich.box import SIMPLE
     from rich.markup import escape
     from rich.table import Table

@@ -38,7 +38,7 @@ def run(args: argparse.Namespace) -> int:
         from saddlewalk.logs.rerun import rerun_lcm
 
         _refuse_body_options(args)
-        log = LcmLog(args.log)
+        log: LcmLog | CanLog = LcmLog(args.log)
         report = _named(args.log, rerun_lcm, log)
     else:
         from saddlewalk.logs.rerun_can import rerun_can

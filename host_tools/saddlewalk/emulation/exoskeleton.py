@@ -16,7 +16,7 @@ from saddlewalk.emulation.punctuality import Punctuality
 from saddlewalk.emulation.wearer import STEP_S, Measurement, Plan, RecoveryStep, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.planning.schedule import Schedule
-from saddlewalk.ticks import PLAN_MESSAGES, Messages, TickReader, next_tick
+from saddlewalk.ticks import PLAN_MESSAGES, FrameBus, Messages, TickReader, next_tick
 from saddlewalk.transport.authentication import Authenticator
 from saddlewalk.transport.wire import Sender, identifier
 from saddlewalk.verdict import level_name
@@ -97,7 +97,7 @@ class Exoskeleton:
 
     def __init__(
         self,
-        bus: can.BusABC,
+        bus: FrameBus,
         wearer: Wearer,
         schedule: Schedule,
         lcm: Any = None,
@@ -248,8 +248,9 @@ class Exoskeleton:
     def _command(self, time_s: float) -> tuple[int, float, float]:
         """Mode, speed and heel-strike angle asked for at that time of the walk."""
         asked = self._schedule(time_s)
-        walk = self._begun and asked.speed_m_s > 0
-        return WALK if walk else STAND, asked.speed_m_s, asked.heel_strike_rad
+        speed_m_s = asked.speed_m_s or 0.0
+        walk = self._begun and speed_m_s > 0
+        return WALK if walk else STAND, speed_m_s, asked.heel_strike_rad
 
     def _send_command_frame(self, time_s: float) -> None:
         """Authenticated, there is none until the firmware has opened a session."""

@@ -13,7 +13,7 @@ STOP_TIMEOUT_S = 5.0
 
 
 @contextlib.contextmanager
-def running_host(*options: str) -> Iterator[subprocess.Popen]:
+def running_host(*options: str) -> Iterator[subprocess.Popen[str]]:
     """Starts it, waits until it is ready, and ends it by SIGTERM when the block ends.
 
     Raises UserError with its last words if it does not become ready or does not end with status 0.
@@ -31,12 +31,12 @@ def running_host(*options: str) -> Iterator[subprocess.Popen]:
         raise _failed(process, words)
 
 
-def _await_ready(process: subprocess.Popen) -> None:
+def _await_ready(process: subprocess.Popen[str]) -> None:
     watchdog = threading.Timer(START_TIMEOUT_S, process.kill)
     watchdog.start()
     words = ""
     try:
-        for line in process.stdout:
+        for line in process.stdout or ():
             if line.strip() == "ready":
                 return
             words += line
@@ -46,7 +46,7 @@ def _await_ready(process: subprocess.Popen) -> None:
     raise _failed(process, words)
 
 
-def _stop(process: subprocess.Popen) -> str:
+def _stop(process: subprocess.Popen[str]) -> str:
     """Its last words. A process that ignores SIGTERM is killed, which its status then shows."""
     process.terminate()
     try:
@@ -56,7 +56,7 @@ def _stop(process: subprocess.Popen) -> str:
         return process.communicate()[0]
 
 
-def _failed(process: subprocess.Popen, words: str) -> UserError:
+def _failed(process: subprocess.Popen[str], words: str) -> UserError:
     last = words.strip().splitlines()[-1:] or [
         f"saddlewalk-host ended, status {process.returncode}"
     ]

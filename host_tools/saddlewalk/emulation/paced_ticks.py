@@ -7,7 +7,7 @@ import can
 
 from saddlewalk.contract import TICK_S
 from saddlewalk.errors import UserError
-from saddlewalk.ticks import Messages, next_tick
+from saddlewalk.ticks import FrameBus, Messages, next_tick
 
 WAKE_UP_S = 0.01  # measurements at 100 Hz
 WAKE_UPS_A_TICK = round(TICK_S / WAKE_UP_S)
@@ -27,26 +27,28 @@ class PacedTicks:
     """
 
     def __init__(
-        self, bus: can.BusABC, hear: Callable[[can.Message], Messages | None], silence_s: float
+        self, bus: FrameBus, hear: Callable[[can.Message], Messages | None], silence_s: float
     ) -> None:
         """Raises UserError when a tick is silence_s away; hear() makes ticks of frames."""
         self._bus, self._hear = bus, hear
         self._held: Messages | None = None
         while next_tick(bus, hear, 0.0):  # these came at no time that is known
             pass
-        arrivals = []
-        for _ in range(ARRIVALS):
+        messages: Messages | None = None
+        arrivals: list[float] = []
+        while len(arrivals) < ARRIVALS:
             messages = next_tick(bus, hear, silence_s)
             if messages is None:
                 raise UserError(f"no tick for {silence_s:g} s")
             arrivals.append(time.monotonic() - len(arrivals) * TICK_S)
         self.begin_s = min(arrivals) + (ARRIVALS - 1) * TICK_S + WAKE_UP_S / 2
+        assert messages is not None
         self._counter, self._place = messages["HEALTH"]["COUNTER"], 0
 
     def at(self, wake_up: int, deadline_s: float) -> list[Messages]:
         """What is to be followed from this wake-up on; returns at its deadline, or soon after."""
-        ticks = []
-        while self._has_next(wake_up, deadline_s):
+        ticks: list[Messages] = []
+        while self._has_next(wake_up, deadline_s) and self._held is not None:
             ticks.append(self._held)
             self._held = None
         time.sleep(max(0.0, deadline_s - time.monotonic()))

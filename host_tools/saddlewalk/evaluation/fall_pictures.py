@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -41,7 +42,7 @@ COLOURS = ("black", BLUE, SKY, GREEN, ORANGE, RED, PINK, "0.5")
 DASHES = ("-", "--")
 BEFORE_S, AFTER_S, FALLEN_S = 0.8, 2.4, 0.3  # about the push, and after a fall
 FALL_HEIGHT = 0.75  # of the usual
-MARGIN_STYLES = {
+MARGIN_STYLES: dict[str, dict[str, Any]] = {
     "margin": {"color": "black", "lw": 2.6, "label": "margin, of the height"},
     "recovery_margin": {"color": ORANGE, "ls": "--"},
     "ebos_xcom": {"color": SKY},

@@ -81,12 +81,11 @@ def _walking(recording: Recording, gait: Gait) -> tuple[float, float]:
 def _measurement(messages: Messages) -> Measurement:
     com, left, right = (messages[f"MEASURED_{name}"] for name in ("COM", "LEFT", "RIGHT"))
 
-    def known(*values: float) -> tuple[float, ...] | None:
-        return values if all(map(math.isfinite, values)) else None
+    def known(x: float, y: float) -> tuple[float, float] | None:
+        return (x, y) if math.isfinite(x) and math.isfinite(y) else None
 
-    height = known(com["HEIGHT"])
     return Measurement(
-        com_height_m=height[0] if height else None,
+        com_height_m=com["HEIGHT"] if math.isfinite(com["HEIGHT"]) else None,
         com_velocity_m_s=known(com["VX"], com["VY"]),
         left_cop_m=known(left["X"], left["Y"]),
         right_cop_m=known(right["X"], right["Y"]),

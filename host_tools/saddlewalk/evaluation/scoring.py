@@ -173,7 +173,7 @@ def states_of(rows: Sequence[Sequence[float]]) -> States:
 
 def announced(walk: Walk, rows: Sequence[Sequence[Cell]], seen: States) -> Announced:
     """From rows of SCORE_COLUMNS, and the states that the supervisor was given."""
-    columns = dict(zip(SCORE_COLUMNS, zip(*rows, strict=True), strict=True))
+    columns: dict[str, Any] = dict(zip(SCORE_COLUMNS, zip(*rows, strict=True), strict=True))
     level = np.array([LEVELS.index(name) for name in columns["level"]])
     columns["level"] = np.where(level == UNKNOWN, np.nan, level)
     margins = {

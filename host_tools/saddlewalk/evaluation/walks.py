@@ -61,7 +61,7 @@ FIELDS = (
 TICK = np.dtype([(name, float) for name in FIELDS])
 
 # Evidence of stability, the less the worse: name in tables -> what it is in a tick.
-MARGINS = {
+MARGINS: dict[str, Callable[[Any], Any]] = {
     "XCoM in I-BoS": lambda ticks: ticks["mos_xcom_m"],
     "XCoM in E-BoS": lambda ticks: ticks["ebos_xcom_m"],
     "CoM in E-BoS": lambda ticks: ticks["ebos_com_m"],

@@ -77,10 +77,11 @@ class Device:
         self._ticks += 1
         if output.faults & lib.SADDLE_FAULT_COMMAND_STALE and output.plan.mode == STANDING:
             lib.saddle_inbox_release(self._inbox)
-        messages = None
+        messages: Messages | None = None
         for frame in self._frames:
             message = can.Message(arbitration_id=frame.id, is_extended_id=False, data=frame.data)
             messages = self._reader.feed(message)
+        assert messages is not None  # the frames of one output are a whole tick
         return messages
 
     def _publish_health(self) -> None:

@@ -59,7 +59,7 @@ class Checker:
     records: dict[str, MessageRecord] = field(
         default_factory=lambda: {name: MessageRecord() for name in MESSAGES}
     )
-    violations: Counter = field(default_factory=Counter)
+    violations: Counter[str] = field(default_factory=Counter)
     detected: int | None = None
     walk_commanded: bool = False  # by whom the firmware shall obey
     blind: int = 0
@@ -73,7 +73,7 @@ class Checker:
 
     def arrived(self, arrival: Arrival, time_s: float) -> None:
         """A frame that was accepted at time_s of the firmware's clock."""
-        name = wire.message_name(arrival.frame.arbitration_id)
+        name = wire.known_name(arrival.frame.arbitration_id)
         signals = wire.signals(arrival.frame)
         record = self.records[name]
         if name != "COMMAND" or self._commands(signals):

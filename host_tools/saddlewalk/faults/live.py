@@ -52,7 +52,7 @@ class FaultyBus:
     def _forward(self) -> None:
         for arrival in self._line.due(self._now_s()):
             self._bus.send(arrival.frame)
-            self.sent_s[wire.message_name(arrival.frame.arbitration_id)] = self._now_s()
+            self.sent_s[wire.known_name(arrival.frame.arbitration_id)] = self._now_s()
 
 
 class FaultyLcm:
@@ -140,8 +140,9 @@ def live_walks(scenario: Scenario, each: int) -> list[tuple[int, int]]:
             for index, fault in enumerate(scenario.faults)
             if fault.kind == kind and _can_happen(kind, fault.strength)
         ]
-        chosen = np.linspace(len(indices) - 1, 0, each).round().astype(int) if indices else []
-        walks += [(indices[place], number) for number, place in enumerate(chosen)]
+        if indices:
+            chosen = np.linspace(len(indices) - 1, 0, each).round().astype(int)
+            walks += [(indices[place], number) for number, place in enumerate(chosen)]
     return walks
 
 
@@ -207,7 +208,7 @@ def run_live(scenario: Scenario, index: int, number: int, seed: int, config: Any
     return outcome_of(fault, True, checker, wearer)
 
 
-def _stalls(host: subprocess.Popen, occurrence: Occurrence) -> list[threading.Timer]:
+def _stalls(host: subprocess.Popen[str], occurrence: Occurrence) -> list[threading.Timer]:
     """Stops the process and lets it go on, at its times."""
     if occurrence.kind != "stall":
         return []

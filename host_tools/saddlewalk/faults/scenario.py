@@ -113,7 +113,7 @@ def _stuck(_: float, __: np.random.Generator) -> Disturbance:
 def _added(arrival: Arrival, amount: Callable[[str], float]) -> list[Arrival]:
     """Something added to each number of a frame; amount(signal) in its unit."""
     values = wire.signals(arrival.frame)
-    names = _NUMBERS[wire.message_name(arrival.frame.arbitration_id)]
+    names = _NUMBERS[wire.known_name(arrival.frame.arbitration_id)]
     numbers = {name: values[name] + amount(name) for name in names}
     return [replace(arrival, frame=wire.changed(arrival.frame, **numbers))]
 
@@ -159,7 +159,7 @@ def _spoof(share: float, random: np.random.Generator) -> Disturbance:
         values = wire.signals(arrival.frame)
         steps = (0, *range(wire.COUNTER_STEP_MAX + 1, wire.COUNTERS))
         other = {"COUNTER": (values["COUNTER"] + int(random.choice(steps))) % wire.COUNTERS}
-        name = wire.message_name(arrival.frame.arbitration_id)
+        name = wire.known_name(arrival.frame.arbitration_id)
         if name == "COMMAND":
             other |= {"MODE": int(random.integers(2)), "SPEED": float(random.uniform(0, 2))}
         else:
@@ -176,7 +176,7 @@ def _nan(share: float, random: np.random.Generator) -> Disturbance:
     def disturb(arrival: Arrival) -> list[Arrival]:
         if random.random() >= share:
             return [arrival]
-        names = _NUMBERS[wire.message_name(arrival.frame.arbitration_id)]
+        names = _NUMBERS[wire.known_name(arrival.frame.arbitration_id)]
         broken = {str(random.choice(names)): math.nan}
         return [replace(arrival, frame=wire.changed(arrival.frame, **broken))]
 
@@ -254,14 +254,14 @@ class Line:
         self._waiting: list[Arrival] = []
         self._sent = itertools.count()
         self._disturbances = [
-            (occurrence, KINDS[occurrence.kind].disturb(occurrence.strength, random))
+            (occurrence, disturb(occurrence.strength, random))
             for occurrence in occurrences
-            if occurrence.is_of_frames
+            if (disturb := KINDS[occurrence.kind].disturb) is not None
         ]
 
     def send(self, frame: can.Message, time_s: float) -> None:
         arrivals = [Arrival(time_s, 0, frame, time_s)]
-        name = wire.message_name(frame.arbitration_id)
+        name = wire.known_name(frame.arbitration_id)
         for occurrence, disturb in self._disturbances:
             if occurrence.begin_s <= time_s < occurrence.end_s and name in occurrence.messages:
                 before = arrivals

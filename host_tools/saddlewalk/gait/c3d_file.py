@@ -100,7 +100,7 @@ def _unit(path: Path, point: Mapping[str, Any]) -> str:
     return unit_of(path, text) if text.strip().strip("\0") else ""
 
 
-def _label_keys(point: Mapping) -> list[str]:
+def _label_keys(point: Mapping[str, Any]) -> list[str]:
     """LABELS holds 255 names, LABELS2 and so on further ones."""
     return sorted(
         (key for key in point if re.fullmatch(r"LABELS\d*", key)), key=lambda k: (len(k), k)

@@ -95,7 +95,8 @@ def _points(source: str, capture: Capture, markers: Markers) -> tuple[dict[str, 
     for name in capture.markers:
         for key in {_plain(name), _full(name)}:
             by_name.setdefault(key, []).append(name)
-    points, filled = {}, {}
+    points: dict[str, np.ndarray] = {}
+    filled: dict[str, tuple[np.ndarray, int]] = {}
     for point in POINTS:
         names = _choose(source, point, capture, markers, by_name)
         for name in names:

@@ -7,12 +7,13 @@ import numpy as np
 from saddlewalk import verdict
 from saddlewalk.gait.events import Gait
 from saddlewalk.gait.recording import Recording
+from saddlewalk.table import Cell
 
 NUMBER_COLUMNS = "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m".split()
 SCORE_COLUMNS = [*NUMBER_COLUMNS, *verdict.COLUMNS, "recovery_margin_m", "faults"]
 
 
-def score_row(time_s: float, scores: dict[str, float]) -> list:
+def score_row(time_s: float, scores: dict[str, float]) -> list[Cell]:
     """One line of --out, in the order of SCORE_COLUMNS."""
     names = ("V_COMP", "S_PEND", "S_JUMP", "S_SW", "MOS_COM", "MOS_XCOM")
     return [
@@ -24,12 +25,12 @@ def score_row(time_s: float, scores: dict[str, float]) -> list:
     ]
 
 
-def report(recording: Recording, gait: Gait, rows: list[list]) -> list[str]:
+def report(recording: Recording, gait: Gait, rows: list[list[Cell]]) -> list[str]:
     """Lines `name value unit`: the walk from the markers, the rest from the firmware's scores."""
     numbers = np.array([row[: len(NUMBER_COLUMNS)] for row in rows])
     columns = dict(zip(NUMBER_COLUMNS, numbers.T, strict=True))
     scored = np.isfinite(columns["mos_com_m"])
-    levels = verdict.ticks_in(row[SCORE_COLUMNS.index("level")] for row in rows)
+    levels = verdict.ticks_in(str(row[SCORE_COLUMNS.index("level")]) for row in rows)
     return [
         f"source {recording.source}",
         _line("duration", recording.duration_s, "s"),

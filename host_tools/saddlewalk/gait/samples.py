@@ -8,6 +8,8 @@ transverse plane but lies about 0.1 m below it. Only gaitkit's data are read; no
 import json
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -36,7 +38,8 @@ def load_sample(name: str) -> Recording:
     sample = SAMPLES[name]
     try:
         package = distribution("gaitkit")
-        text = package.locate_file(f"gaitkit/data/{sample.file}").read_text(encoding="utf-8")
+        path = Path(str(package.locate_file(f"gaitkit/data/{sample.file}")))
+        text = path.read_text(encoding="utf-8")
     except (PackageNotFoundError, FileNotFoundError) as error:
         raise UserError(f"--sample {name} needs gaitkit 1.5.0: run `{INSTALL}`") from error
     trial = json.loads(text)
@@ -54,7 +57,7 @@ def load_sample(name: str) -> Recording:
     )
 
 
-def _points_m(frames: list[dict], key: str, sample: Sample) -> np.ndarray:
+def _points_m(frames: list[dict[str, Any]], key: str, sample: Sample) -> np.ndarray:
     """(n, 3) of one landmark in the task frame. gaitkit writes one that was not seen as zeros."""
     points_mm = np.array([frame["landmark_positions"][key] for frame in frames], dtype=float)
     points_mm[~points_mm.any(axis=1)] = np.nan

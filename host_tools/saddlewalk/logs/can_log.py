@@ -3,11 +3,12 @@
 import logging
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import IO, Any
 
 import can
+from can.io.generic import FileIOMessageReader
 
 from saddlewalk.errors import UserError
 
@@ -78,7 +79,8 @@ class CanLog:
                 f"{self.path} is neither an LCM log nor a CAN log that can be read "
                 f"({', '.join(SUFFIXES)}): {_words(error)}"
             ) from error
-        reader.file = _Lines(reader.file)
+        if isinstance(reader, FileIOMessageReader):
+            reader.file = _Lines(reader.file)
         return reader
 
 
@@ -134,7 +136,7 @@ class _Blf(can.BLFReader):
             self.file.close()
             raise
 
-    def __iter__(self) -> Iterator[can.Message]:
+    def __iter__(self) -> Generator[can.Message, None, None]:
         while header := self.file.read(_BLF_OBJECT.size):
             signature, _, _, size, kind = _BLF_OBJECT.unpack(header)
             if signature != b"LOBJ":

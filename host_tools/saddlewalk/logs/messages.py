@@ -38,7 +38,8 @@ class Kind:
 
     def is_whole(self, data: bytes) -> bool:
         """Whether data of a fixed layout is such a message."""
-        return len(data) == self.layout.itemsize and data.startswith(self.fingerprint)
+        whole = self.layout is not None and len(data) == self.layout.itemsize
+        return whole and data.startswith(self.fingerprint)
 
     def decode(self, data: bytes) -> Any:
         """None if it is not such a message."""
@@ -78,7 +79,7 @@ def decode(event: Event) -> Any:
 
 def _layout(generated: Any) -> np.dtype | None:
     """The encoded message, member by member, behind the fingerprint of its type."""
-    members: list[tuple] = [(_FINGERPRINT, ">u8")]
+    members: list[tuple[Any, ...]] = [(_FINGERPRINT, ">u8")]
     described = (generated.__slots__, generated.__typenames__, generated.__dimensions__)
     for name, kind, dimensions in zip(*described, strict=True):
         dimensions = dimensions or []

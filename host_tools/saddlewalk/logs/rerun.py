@@ -146,8 +146,9 @@ def _begun(event: Event, config: Event | None) -> LoggedTick:
             f"a message of {len(event.data)} bytes on SADDLEWALK_INPUT is not an input_t as "
             f"saddlewalk {__version__} has it"
         )
-    with_it = config is not None and _utime_us(config) == inputs.time_us
-    return LoggedTick(number[0], inputs, decode(config) if with_it else None)
+    if config is not None and _utime_us(config) != inputs.time_us:
+        config = None
+    return LoggedTick(number[0], inputs, None if config is None else decode(config))
 
 
 def _utime_us(event: Event) -> int:
@@ -297,7 +298,7 @@ def _unreadable(tick: int, event: Event) -> Difference:
 
 def _flat(message: Any) -> dict[str, tuple[str, Any]]:
     """Fields of an LCM message, element by element: name -> (LCM type, value)."""
-    flat = {}
+    flat: dict[str, tuple[str, Any]] = {}
     for name, kind in zip(message.__slots__, message.__typenames__, strict=True):
         value = getattr(message, name)
         if isinstance(value, list | tuple):

@@ -112,9 +112,10 @@ class _Node:
 
     def _tick(self) -> None:
         time_us = self.ticks * TICK_US
-        never = self._command_us is None
         self._input.time_us = time_us
-        self._input.command_age_us = AGE_NEVER_US if never else time_us - self._command_us
+        received_us = self._command_us
+        age_us = AGE_NEVER_US if received_us is None else time_us - received_us
+        self._input.command_age_us = age_us
         self.firmware.tick(self._input)
         self.ticks += 1
         self.waiting += 1
@@ -131,7 +132,7 @@ def _compare(report: Report, node: _Node, answer: dict[str, bytes]) -> bool:
     counts = recorded["LATE_TICKS"], recorded["REJECTED_FRAMES"]
     first = None
     for identifier, data in node.firmware.frames(tick % wire.COUNTERS, *counts).items():
-        name = wire.message_name(identifier)
+        name = wire.known_name(identifier)
         if name not in answer:
             report.misses(name, tick)
             continue
@@ -165,7 +166,7 @@ def _in_lockstep(report: Report, node: _Node, counter: int) -> bool:
 
 def _difference(tick: int, identifier: int, recorded: bytes, recomputed: bytes) -> Difference:
     """Names the first signal that differs; CRC only if that alone does."""
-    name = wire.message_name(identifier)
+    name = wire.known_name(identifier)
     theirs, ours = (wire.raw_signals(identifier, data) for data in (recorded, recomputed))
     different = [signal for signal in ours if ours[signal] != theirs[signal]]
     signal = next((signal for signal in different if signal != "CRC"), "CRC")

@@ -109,7 +109,7 @@ class Table:
         cells.pop(LOGGED, None)
         return cells
 
-    def _lists(self, rows: list[dict]) -> dict[str, Any]:
+    def _lists(self, rows: list[dict[str, Any]]) -> dict[str, Any]:
         columns = [column for column in self.kinds if column != LOGGED]
         return {column: [row.get(column, (None, None))[1] for row in rows] for column in columns}
 
@@ -142,7 +142,7 @@ def tables_of(events: Iterable[Event]) -> tuple[dict[str, Table], Others]:
 
 def columns_of(message: Any) -> dict[str, tuple[str, Value]]:
     """Column -> (LCM's name of its type, value), in the order of the type's members."""
-    columns = {}
+    columns: dict[str, tuple[str, Value]] = {}
     for name, kind in zip(message.__slots__, message.__typenames__, strict=True):
         value = getattr(message, name)
         if isinstance(value, list | tuple):
@@ -284,10 +284,15 @@ class _McapFile:
         self._rows[table.name] += len(block.logged_us)
 
     def finish(self) -> None:
-        self._writer.finish()
+        finish: Callable[[], None] = self._writer.finish  # which has no types
+        finish()
 
 
-_WRITERS = {"csv": _CsvFiles, "parquet": _ParquetFiles, "mcap": _McapFile}
+_WRITERS: dict[str, Callable[[list[Table], Path, contextlib.ExitStack], Writer]] = {
+    "csv": _CsvFiles,
+    "parquet": _ParquetFiles,
+    "mcap": _McapFile,
+}
 _ARROW = {"float": "float32", "double": "float64"}
 
 

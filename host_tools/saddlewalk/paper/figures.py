@@ -5,6 +5,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -113,7 +114,11 @@ def _finish(axes: Axes, **labels: str) -> None:
 
 def _draw_people(axes: Axes, trials: Sequence[Trial], quantity: str, factor: float = 1.0) -> None:
     """Each trial a dot; children are hollow."""
-    for children, style in ((False, {"color": "0.25"}), (True, {"mfc": "white", "mec": "0.25"})):
+    styles: dict[bool, dict[str, Any]] = {
+        False: {"color": "0.25"},
+        True: {"mfc": "white", "mec": "0.25"},
+    }
+    for children, style in styles.items():
         group = [trial for trial in trials if trial.child == children]
         if group:
             axes.plot(

@@ -92,7 +92,7 @@ def numbers(simulations: Simulations) -> list[Number]:
 
 def half_digit(printed: str) -> float:
     """Half a unit of the last digit that is printed."""
-    return 0.5 * 10.0 ** Decimal(printed).as_tuple().exponent
+    return 0.5 * 10.0 ** int(Decimal(printed).as_tuple().exponent)
 
 
 def _parameters(simulations: Simulations) -> Iterator[Number]:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -183,7 +184,7 @@ def _departures_table(trials: Sequence[Trial]) -> str:
     """How far people are from the model, bias and RMSE over the trials that tell."""
     walking = [trial for trial in trials if gait(trial.speed_m_s).planned]
     model = [(gait(trial.speed_m_s), simulate(trial.speed_m_s)) for trial in walking]
-    quantities: dict[str, Callable] = {
+    quantities: dict[str, Callable[[Any, Any, Any], float]] = {
         "half step length (mm)": lambda t, g, _: 1e3 * (t.step_length_m / 2 - g.half_step_m),
         "step width (mm)": lambda t, g, _: 1e3 * (t.step_width_m - g.width_m),
         "vertical, regression (mm)": lambda t, g, _: 1e3 * (t.vertical_m - g.vertical_m),

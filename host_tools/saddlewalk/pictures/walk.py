@@ -31,7 +31,7 @@ MARGINS = (
     ("ebos_xcom_m", "XCoM at the next\nheel strike"),
 )
 # From the lowest lane up; alarms have a pattern as well.
-LANES = {
+LANES: dict[str, dict[str, Any]] = {
     "unknown": {"color": "0.6"},
     "stable": {"color": GREEN},
     "caution": {"facecolor": ORANGE, "hatch": "///"},
@@ -249,7 +249,7 @@ def draw_balance(
 ) -> None:
     """The margin that decides the level; below it the caution band, and from 0 down unstable."""
     low, high = BALANCE_SHOWN
-    band = {"lw": 0, "zorder": 0}
+    band: dict[str, Any] = {"lw": 0, "zorder": 0}
     axes.fill_between(time_s, 0, caution_below, alpha=0.35, **band, **LANES["caution"])
     axes.axhspan(low, 0, alpha=0.2, **band, **LANES["unstable"])
     axes.plot(time_s, margin, color=BLUE, lw=1.8, label="margin")

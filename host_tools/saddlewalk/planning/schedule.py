@@ -84,7 +84,9 @@ def walk(
     starts_s = [wish.from_s for wish in changes]
     ticks_per_row = math.ceil(dt_s / TICK_S - _SAME_TIME_S)
     tick_s = dt_s / ticks_per_row
-    before, events, tick = None, [], 0
+    before: Any = None
+    events: list[Event] = []
+    tick = 0
     while True:
         t_s = tick * tick_s
         wish = changes[bisect_right(starts_s, t_s + _SAME_TIME_S) - 1]

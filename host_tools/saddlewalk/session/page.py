@@ -9,13 +9,13 @@ import numpy as np
 
 from saddlewalk import __version__, html_page
 from saddlewalk.config import ANKLES
-from saddlewalk.contract import LEVELS
+from saddlewalk.contract import LEVELS, SIDES
 from saddlewalk.html_page import table
 from saddlewalk.printable import printable
 from saddlewalk.session import quality
 from saddlewalk.session.pictures import draw
 from saddlewalk.session.runs import NO_NUMBER, Run, Session, Spans
-from saddlewalk.session.steps import QUANTITIES, SIDES, Steps, Way, variability, walked
+from saddlewalk.session.steps import QUANTITIES, Steps, Way, variability, walked
 
 TITLE = "Session report"
 LISTED = 200  # alarms, and gaps: the worst ones

@@ -3,10 +3,12 @@
 import io
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from saddlewalk.contract import LEVELS
 from saddlewalk.pictures.walk import BALANCE_SHOWN, BLUE, FEET, GREEN, LANES, ORANGE, RED
@@ -93,7 +95,7 @@ def _spans(run: Run, there: np.ndarray) -> Spans:
     return spans.where(spans.value)
 
 
-def _bar(axes: Axes, spans: Spans, shown_s: float, lane: int, style: dict) -> None:
+def _bar(axes: Axes, spans: Spans, shown_s: float, lane: int, style: dict[str, Any]) -> None:
     axes.broken_barh(_extents(spans, shown_s), (lane - 0.4, 0.8), lw=0, **style)
 
 
@@ -123,8 +125,7 @@ def _about(span: Span) -> tuple[float, float]:
 
 def _draw_scores(run: Run, from_s: float = 0.0, to_s: float | None = None) -> bytes:
     """The whole run, or a part of it."""
-    figure = Figure(figsize=(13, 13), dpi=110, layout="constrained")
-    figure.get_layout_engine().set(w_pad=0.1)
+    figure = Figure(figsize=(13, 13), dpi=110, layout=ConstrainedLayoutEngine(w_pad=0.1))
     balance, speed, scores, margins, energy = figure.subplots(5, 1, sharex=True)
     shown = (from_s, to_s or run.duration_s)
     _draw_margin(balance, run, shown)
@@ -200,7 +201,7 @@ def _shade(axes: Axes, run: Run, shown: tuple[float, float]) -> None:
         ends_s = spans.start_s + spans.duration_s
         spans = spans.where((spans.start_s < shown[1]) & (ends_s > shown[0]))
         extents = _extents(spans, shown[1] - shown[0])
-        bars = {"color": "0.5", "alpha": alpha, "lw": 0}
+        bars: dict[str, Any] = {"color": "0.5", "alpha": alpha, "lw": 0}
         axes.broken_barh(extents, (0, 1), transform=axes.get_xaxis_transform(), **bars)
     axes.set_ylim(heights)
 

@@ -27,7 +27,7 @@ RUNS_MAX = 20  # more are two firmware processes that were logged at once
 BLOCK = 4096  # messages of a channel that are held as they came
 
 # Columns that can be asked for: members, or with an index elements, of each channel.
-KEPT: dict[str, tuple] = {
+KEPT: dict[str, tuple[str | tuple[str, int], ...]] = {
     "input": (
         *("command_age_us", "com_age_us", "left_age_us", "right_age_us"),
         *(("com_velocity_m_s", 0), ("left_m", 0), ("left_m", 1), ("right_m", 0), ("right_m", 1)),
@@ -129,12 +129,14 @@ class Channel:
         self._block = []
         for key, column in self._columns.items():
             member, *element = (key,) if isinstance(key, str) else key
-            numbers = messages[member][(slice(None), *element)]
+            numbers = messages[member]
+            numbers = numbers[:, element[0]] if element else numbers
             column += numbers.astype(self._type(key)).tobytes()
 
     def _type(self, key: str | tuple[str, int]) -> np.dtype:
         """LCM's, but for ages in microseconds, which are shown in milliseconds."""
         member = key if isinstance(key, str) else key[0]
+        assert self.kind.layout is not None  # of a kind that is KEPT
         logged = self.kind.layout[member].base.newbyteorder("=")
         return np.dtype(np.float32) if logged == np.int64 else logged
 
@@ -143,10 +145,10 @@ class Channel:
 class Run:
     """One run of the firmware, at least one tick. Times are since its first tick in the log."""
 
-    utime_us: array  # of each tick
-    numbers: array  # ticks', from 0 at the start of the firmware; NO_NUMBER: no message tells
+    utime_us: "array[int]"  # of each tick
+    numbers: "array[int]"  # of ticks, from 0 at the firmware's start; NO_NUMBER: unknown
     channels: dict[str, Channel]  # by name, as `plan`
-    falls: array  # ticks during which an emulated wearer fell
+    falls: "array[int]"  # ticks during which an emulated wearer fell
 
     @property
     def fell_s(self) -> float | None:
@@ -279,10 +281,9 @@ def load_session(path: Path) -> Session:
     """Raises UserError for a file that is no LCM log, or holds nothing of the firmware's."""
     log = LcmLog(path)
     gathered = _Gathered()
-    first_us = last_us = None
+    logged_us: list[int] = []  # of the first event and the last
     for event in log:
-        last_us = event.logged_us
-        first_us = last_us if first_us is None else first_us
+        logged_us[1:] = [event.logged_us]
         gathered.take(event.channel, event.data)
         if len(gathered.runs) > RUNS_MAX:
             raise UserError(
@@ -298,7 +299,12 @@ def load_session(path: Path) -> Session:
             "this version's firmware sends: give a log of SADDLEWALK_ channels"
         )
     return Session(
-        gathered.runs, (first_us, last_us), log.events, unreadable, gathered.fell, log.broken
+        gathered.runs,
+        (logged_us[0], logged_us[-1]),
+        log.events,
+        unreadable,
+        gathered.fell,
+        log.broken,
     )
 
 

@@ -61,7 +61,7 @@ class Authenticator:
             return
         accepted = self._receiver.accept(frame)
         if accepted and accepted[1]["SESSION"] != self._session:
-            self._session, self._freshness = accepted[1]["SESSION"], 0
+            self._session, self._freshness = int(accepted[1]["SESSION"]), 0
 
     def frames(self, sender: Sender, **command: float) -> list[can.Message]:
         """COMMAND_CODE and COMMAND, to be sent in this order; none while there is no session."""

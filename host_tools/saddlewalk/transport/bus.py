@@ -14,8 +14,10 @@ import select
 import socket
 import struct
 import time
+from typing import Any
 
 import can
+from can.interfaces.socketcan import SocketcanBus
 from can.interfaces.udp_multicast.utils import pack_message, unpack_message
 
 from saddlewalk.errors import UserError
@@ -38,7 +40,7 @@ class LoopbackUdpBus(can.BusABC):
     frame.
     """
 
-    def __init__(self, channel: str = f"{DEFAULT_GROUP}:{DEFAULT_PORT}", **kwargs: object) -> None:
+    def __init__(self, channel: str = f"{DEFAULT_GROUP}:{DEFAULT_PORT}", **kwargs: Any) -> None:
         group, _, interface = str(channel).partition("@")
         interface = interface or _LOOPBACK
         self._address = _address(group)
@@ -177,6 +179,7 @@ def _open_socketcan(channel: str) -> can.BusABC:
         bus = can.Bus(interface="socketcan", channel=channel, fd=True)
     except (OSError, can.CanError) as error:
         raise UserError(f"CAN interface {channel} cannot be opened ({error}): try udp") from error
+    assert isinstance(bus, SocketcanBus)
     bus.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER)
     return bus
 

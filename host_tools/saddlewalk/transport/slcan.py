@@ -31,7 +31,7 @@ class SlcanBus(can.BusABC):
         self._line = line
         self._begun = b""  # the line that has not ended yet
         self._frames: collections.deque[can.Message] = collections.deque()
-        super().__init__(channel=None)
+        super().__init__(channel=description)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
         """Raises UserError if nobody is there any more."""

@@ -7,6 +7,7 @@ available. `<saddlewalk/wire.h>` states the frame layout and the rule of the ali
 
 import math
 from dataclasses import dataclass, field
+from typing import cast
 
 import can
 import cantools
@@ -21,7 +22,8 @@ NOT_AVAILABLE = -32768
 _RAW_MAX = 32767
 
 _database = cantools.database.load_file(paths.CHECKOUT / "firmware/wire/saddlewalk.dbc")
-WIRE_VERSION = int(_database.version)
+assert isinstance(_database, cantools.database.can.Database)
+WIRE_VERSION = int(str(_database.version))
 
 
 def _crc_of_byte(byte: int) -> int:
@@ -33,7 +35,7 @@ def _crc_of_byte(byte: int) -> int:
 _CRC_TABLE = bytes(_crc_of_byte(byte) for byte in range(256))
 
 
-def crc(data: bytes) -> int:
+def crc(data: bytes | bytearray) -> int:
     """CRC-8 SAE J1850. b"123456789" gives 0x4B."""
     value = 0xFF
     for byte in data:
@@ -41,7 +43,7 @@ def crc(data: bytes) -> int:
     return value ^ 0xFF
 
 
-def frame_crc(identifier: int, data: bytes) -> int:
+def frame_crc(identifier: int, data: bytes | bytearray) -> int:
     """Byte 0 of a frame: the CRC of its identifier, low byte first, and bytes 1 to 7."""
     return crc(identifier.to_bytes(2, "little") + data[1:])
 
@@ -57,7 +59,7 @@ class _Signal:
 
     def raw(self, value: float | None) -> int:
         if not self.is_number:
-            return min(max(int(value), 0), self._code_max)
+            return min(max(int(value or 0), 0), self._code_max)
         if value is None or not math.isfinite(value):
             return NOT_AVAILABLE
         limited = np.float32(min(max(value, -self._limit), self._limit))
@@ -80,15 +82,23 @@ class _Message:
         self._codec = message
 
     def encode(self, counter: int, values: dict[str, float | None]) -> bytes:
-        known = {"CRC": 0, "COUNTER": counter, "WIRE_VERSION": WIRE_VERSION}
+        known: dict[str, float | None] = {
+            "CRC": 0,
+            "COUNTER": counter,
+            "WIRE_VERSION": WIRE_VERSION,
+        }
         given = known | values
         raw = {name: signal.raw(given[name]) for name, signal in self.signals.items()}
         data = bytearray(self._codec.encode(raw, scaling=False, strict=False))
         data[0] = frame_crc(self.id, data)
         return bytes(data)
 
-    def decode(self, data: bytes) -> dict[str, float]:
-        raw = self._codec.decode(data, decode_choices=False, scaling=False)
+    def raw(self, data: bytes | bytearray) -> dict[str, int]:
+        raw = self._codec.decode(bytes(data), decode_choices=False, scaling=False)
+        return cast(dict[str, int], raw)
+
+    def decode(self, data: bytes | bytearray) -> dict[str, float]:
+        raw = self.raw(data)
         return {name: self.signals[name].value(raw[name]) for name in raw if name != "CRC"}
 
 
@@ -175,7 +185,7 @@ class Receiver:
         if values.get("WIRE_VERSION", WIRE_VERSION) != WIRE_VERSION:
             self.bad_version += 1
             return None
-        if not self._in_step(message.id, values["COUNTER"]):
+        if not self._in_step(message.id, int(values["COUNTER"])):
             self.bad_counter += 1
             return None
         self.accepted += 1
@@ -190,7 +200,7 @@ class Receiver:
 
 def raw_signals(identifier: int, data: bytes) -> dict[str, int]:
     """All signals of a frame as they are on the wire, CRC and COUNTER too, whatever they say."""
-    return _by_id[identifier]._codec.decode(data, decode_choices=False, scaling=False)
+    return _by_id[identifier].raw(data)
 
 
 def signals(frame: can.Message) -> dict[str, float]:
@@ -201,8 +211,13 @@ def signals(frame: can.Message) -> dict[str, float]:
 def changed(frame: can.Message, **values: float | None) -> can.Message:
     """A frame of ours with other values of some signals, COUNTER too if given, and sealed anew."""
     message = _by_id[frame.arbitration_id]
-    data = message.encode(0, message.decode(frame.data) | values)
+    data = message.encode(0, {**message.decode(frame.data), **values})
     return can.Message(frame.timestamp, message.id, is_extended_id=False, data=data)
+
+
+def known_name(identifier: int) -> str:
+    """The name of an identifier that is in the database."""
+    return _by_id[identifier].name
 
 
 def message_name(identifier: int) -> str | None:

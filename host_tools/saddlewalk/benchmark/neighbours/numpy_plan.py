@@ -6,6 +6,7 @@ of time takes one instant or an array of them, in seconds.
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +28,9 @@ class Body:
     peak_speed_m_s: float = 3.0
 
 
-def plan(body: Body, speed_m_s: float, heel_strike_rad: float, t_s: np.ndarray) -> dict:
+def plan(
+    body: Body, speed_m_s: float, heel_strike_rad: float, t_s: np.ndarray
+) -> dict[str, np.ndarray]:
     """Plan, scores, gravity and margins at t_s, under the names of `saddlewalk plan`'s columns."""
     pendulum = 0.57 * body.height_m  # [E1]
     frequency = np.sqrt(GRAVITY_M_S2 / pendulum)  # [E2]
@@ -74,7 +77,7 @@ def step_width(speed_m_s: float) -> float:
     return 0.10 if speed_m_s > 1.1 else 0.3456 - 0.2128 * speed_m_s
 
 
-def com_path(speed_m_s: float, width: float, step_time: float, t_s: np.ndarray) -> tuple:
+def com_path(speed_m_s: float, width: float, step_time: float, t_s: np.ndarray) -> tuple[Any, ...]:
     """x, y and their velocities, [E7]."""
     amplitude = min(width / (2 * np.pi * speed_m_s), width / np.pi)
     rate = np.pi / step_time
@@ -85,7 +88,7 @@ def com_path(speed_m_s: float, width: float, step_time: float, t_s: np.ndarray) 
 
 def feet(
     width: float, half_step: float, step_time: float, x: np.ndarray, y: np.ndarray, t_s: np.ndarray
-) -> tuple:
+) -> tuple[Any, ...]:
     """Left, right and stance foot, each x, y, z: [E8], [E9], [E10]."""
     steps = np.floor(t_s / step_time + 0.5)
     left_stands = np.mod(steps, 2) == 0
@@ -115,7 +118,7 @@ def ankles(
     step_time: float,
     heel_strike_rad: float,
     t_s: np.ndarray,
-) -> tuple:
+) -> tuple[Any, ...]:
     """Leg length, toe-off and heel-strike angle: [E11], [E12], [E13]."""
     pendulum = 0.57 * body.height_m
     until_strike = step_time / 2 - body.d_h_m * (1 - np.cos(heel_strike_rad)) / speed_m_s
@@ -133,7 +136,9 @@ def ankles(
     return pendulum + 2 * body.d_h_m * np.sin(acting / 2), toe_off_now, heel_strike_now
 
 
-def step_scores(body: Body, speed_m_s: float, half_step: float, frequency: float) -> tuple:
+def step_scores(
+    body: Body, speed_m_s: float, half_step: float, frequency: float
+) -> tuple[Any, ...]:
     """S_pend and S_jump of a step that is the reference, [E20]."""
     shortest = speed_m_s / (2 * frequency)  # [E6]
     longest = body.peak_speed_m_s / (2 * frequency)
@@ -143,7 +148,9 @@ def step_scores(body: Body, speed_m_s: float, half_step: float, frequency: float
     return s_pend, s_jump
 
 
-def gravity(body: Body, pendulum: float, stance: tuple, x: np.ndarray, y: np.ndarray) -> tuple:
+def gravity(
+    body: Body, pendulum: float, stance: tuple[Any, ...], x: np.ndarray, y: np.ndarray
+) -> tuple[Any, ...]:
     """Force along the surface of potential energy, [E18]."""
     dx, dy = x - stance[0], y - stance[1]
     surface = np.sqrt(pendulum**2 - dx**2 - dy**2)
@@ -151,7 +158,9 @@ def gravity(body: Body, pendulum: float, stance: tuple, x: np.ndarray, y: np.nda
     return weight * dx / surface, weight * dy / surface
 
 
-def margin(left: tuple, right: tuple, d_h_m: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+def margin(
+    left: tuple[Any, ...], right: tuple[Any, ...], d_h_m: float, x: np.ndarray, y: np.ndarray
+) -> np.ndarray:
     """Signed distance to the border of the base of support: [E15], [E16], [E17]."""
     across_x, across_y = left[0] - right[0], left[1] - right[1]
     distance = np.hypot(across_x, across_y)

@@ -18,8 +18,9 @@ ROWS = (
 ).split()
 
 
-def _end(process: subprocess.Popen) -> None:
+def _end(process: subprocess.Popen[str]) -> None:
     """At the end of its input Octave ends by itself; killed, it would leave a file behind."""
+    assert process.stdin and process.stdout
     process.stdin.close()
     process.wait()
     process.stdout.close()
@@ -42,7 +43,9 @@ class Octave:
         weakref.finalize(self, _end, self._process)
         self._ask(f"source('{SCRIPT}'); puts('ready')")
 
-    def plan(self, speed_m_s: float, heel_strike_rad: float, t_s: Sequence[float]) -> dict:
+    def plan(
+        self, speed_m_s: float, heel_strike_rad: float, t_s: Sequence[float]
+    ) -> dict[str, list[float]]:
         """The plan at t_s, under the names of `saddlewalk plan`'s columns."""
         self._set_walk(speed_m_s, heel_strike_rad, t_s)
         text = self._ask("rows = plan_walk(speed, heel_strike, t); printf('%.17g ', rows')")
@@ -63,11 +66,13 @@ class Octave:
         self._tell(f"speed = {speed_m_s}; heel_strike = {heel_strike_rad}; t = [{times}];")
 
     def _tell(self, statement: str) -> None:
+        assert self._process.stdin
         self._process.stdin.write(f"{statement}\n")
 
     def _ask(self, statement: str) -> str:
         """The line that the statement prints."""
         self._tell(f"{statement}; printf('\\n'); fflush(stdout);")
+        assert self._process.stdin and self._process.stdout
         self._process.stdin.flush()
         line = self._process.stdout.readline()
         if not line.strip():
