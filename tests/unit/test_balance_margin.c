@@ -27,7 +27,7 @@ void tearDown(void) {}
 /* ---- the equations once more, in double ---------------------------------------------------- */
 
 typedef struct {
-    double vx, vy, height, square, watched, walked, last_height, climb;
+    double vx, vy, height, square, watched, walked, last_height, same_height, climb;
     bool begun;
 } twin_t;
 
@@ -54,7 +54,14 @@ static double twin_margin_of(twin_t *twin, const saddle_measurement_t *seen, dou
                          .watched = twin->watched, .walked = twin->walked, .last_height = z,
                          .begun = true};
     } else {
-        twin->climb += fmin(dt_s / 0.08, 1.0) * ((z - twin->last_height) / dt_s - twin->climb);
+        twin->same_height += dt_s;
+        if (z != twin->last_height) {
+            const double since_s = twin->same_height;
+            const double rate = (z - twin->last_height) / since_s;
+            twin->climb += fmin(since_s / 0.08, 1.0) * (rate - twin->climb);
+            twin->last_height = z;
+            twin->same_height = 0.0;
+        }
     }
     const double h = twin->height;
     const double s = sqrt(GRAVITY * h);
@@ -76,8 +83,7 @@ static double twin_margin_of(twin_t *twin, const saddle_measurement_t *seen, dou
         const double counted = fmax(fmin(square, 4.0 * twin->square), 0.005 * 0.005);
         twin->square += ripple_share * (counted - twin->square);
     }
-    twin->last_height = z;
-    return margin;
+    return fmin(margin, 2.0 * (0.4 - fmax(0.0, -twin->climb) / s));
 }
 
 /* ---- what is measured ---------------------------------------------------------------------- */
@@ -208,14 +214,94 @@ static void test_sinking_com_is_evidence(void)
     saddle_measurement_t seen = standing();
     tick(&seen);
     const float before = output.verdict.margin;
-    seen.com.height_m -= 0.2f; /* 2.5 m/s */
+    seen.com.height_m -= 0.048f; /* 0.6 m/s */
     tick(&seen);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-5, (double)before - 0.45 * 2.5 / sqrt(GRAVITY),
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, (double)before - 0.45 * 0.6 / sqrt(GRAVITY),
                               output.verdict.margin);
-    assert_level(SADDLE_LEVEL_UNSTABLE, SADDLE_REASON_SINKING);
-    seen.com.height_m += 0.2f; /* rising is none */
-    tick(&seen);
     assert_level(SADDLE_LEVEL_STABLE, SADDLE_REASON_NONE);
+    seen.com.height_m += 0.048f; /* rising is none */
+    tick(&seen);
+    TEST_ASSERT_TRUE(output.verdict.margin > before - 1e-4f);
+}
+
+/* Straight down over the feet from standing, at a share of gravity: announced while the CoM is above
+ * three quarters of its height, but where the legs still carry two thirds of the weight. */
+static void test_collapse_over_the_feet_is_announced(void)
+{
+    const double accelerations[] = {9.8, 6.0, 4.0};
+    for (size_t i = 0; i < COUNT_OF(accelerations); i++) {
+        double announced_at_m = 0.0;
+        setUp();
+        tick_us = 20000u;
+        for (int k = 0; k < 60 && announced_at_m <= 0.0; k++) {
+            saddle_measurement_t seen = standing();
+            const double t = 0.02 * (double)(k > 20 ? k - 20 : 0);
+            seen.com.height_m = (float)(1.0 - 0.5 * accelerations[i] * t * t);
+            seen.com.velocity_m_s.x = 0.001f * (float)k;
+            tick(&seen);
+            if (output.verdict.level == (uint8_t)SADDLE_LEVEL_UNSTABLE) {
+                announced_at_m = (double)seen.com.height_m;
+            }
+        }
+        TEST_ASSERT_TRUE(announced_at_m > (i < 2u ? 0.75 : 0.6));
+        TEST_ASSERT_EQUAL_UINT8(SADDLE_REASON_SINKING, output.verdict.reason);
+    }
+}
+
+/* Sitting down in 0.6 s takes 0.8 m/s at most. Heights that come every 160 ms sink no faster. */
+static void test_sitting_down_is_no_collapse_however_slow_the_sensor(void)
+{
+    const int held_ticks[] = {1, 4, 8, 12};
+    for (size_t i = 0; i < COUNT_OF(held_ticks); i++) {
+        setUp();
+        tick_us = 20000u;
+        for (int k = 0; k < 100; k++) {
+            const double t = 0.02 * (double)(k / held_ticks[i] * held_ticks[i]) - 0.6;
+            const double share = fmin(fmax(t / 0.6, 0.0), 1.0);
+            saddle_measurement_t seen = standing();
+            seen.com.height_m = (float)(0.97 - 0.145 * (1.0 - cos(PI * share)));
+            seen.com.velocity_m_s.x = 0.001f * (float)k;
+            seen.foot[SADDLE_LEFT].cop_m.x = seen.foot[SADDLE_RIGHT].cop_m.x = 1e-4f * (float)k;
+            tick(&seen);
+            TEST_ASSERT_TRUE(output.verdict.margin > 0.15f);
+        }
+    }
+}
+
+/* A foot that is lost in between takes nothing from what is known of the CoM. */
+static void test_lost_foot_leaves_the_sinking_known(void)
+{
+    for (int lost = 0; lost < 2; lost++) {
+        setUp();
+        tick_us = 20000u;
+        for (int k = 0; k < 20; k++) {
+            saddle_measurement_t seen = standing();
+            seen.com.height_m = 1.0f - 0.02f * (float)k;
+            if (lost != 0 && k % 2 == 0 && k > 0) {
+                seen.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
+            }
+            tick(&seen);
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(0.05, 2.0 * (0.4 - 1.0 / sqrt(GRAVITY * 0.9)),
+                                  output.verdict.margin);
+    }
+}
+
+/* Who lies on the ground has fallen: that is no missing measurement, and nothing to learn from. */
+static void test_com_below_the_knees_is_unstable_once_it_was_seen_above(void)
+{
+    saddle_measurement_t seen = standing();
+    tick(&seen);
+    for (int k = 0; k < 30; k++) {
+        seen.com.height_m = 0.3f + 0.0001f * (float)k;
+        tick(&seen);
+        TEST_ASSERT_BITS_HIGH(SADDLE_FAULT_COM_LOW, output.faults);
+        assert_level(SADDLE_LEVEL_UNSTABLE, SADDLE_REASON_SINKING);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0, output.walk.height_m);
+    setUp();
+    tick(&seen); /* from the first tick it may be the sensor's offset */
+    assert_level(SADDLE_LEVEL_UNKNOWN, SADDLE_REASON_INPUT);
 }
 
 /* Nobody knows how fast the CoM sank while it was not measured. */
@@ -295,7 +381,7 @@ static void test_caution_band_is_the_walker_s_own(void)
     for (size_t i = 0; i < COUNT_OF(usual); i++) {
         learning.walk.step_margin = usual[i];
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, band[i],
-                                  saddle_caution_below(model_of(&config), &learning));
+                                  saddle_caution_below(model_of(&config), &learning, 0.0f));
     }
 }
 
@@ -312,9 +398,27 @@ static void test_walking_speed_does_not_follow_a_fall(void)
             seen.foot[side].cop_m.x -= 0.3f;
         }
         tick(&seen);
-        TEST_ASSERT_DOUBLE_WITHIN(0.05, (double)usual_m_s, output.scores.v_comp_m_s);
+        const double most_m_s = 0.1 * (double)((k - 99) / 7) + 0.05; /* a step */
+        TEST_ASSERT_DOUBLE_WITHIN(most_m_s, (double)usual_m_s, output.scores.v_comp_m_s);
     }
     TEST_ASSERT_DOUBLE_WITHIN(1e-2, 0.56, output.walk.step_length_m);
+}
+
+/* Nor a stumble within a step that is over before the heel strike. */
+static void test_walking_speed_does_not_follow_a_stumble_within_a_step(void)
+{
+    tick_until(0, 106);
+    const float usual_m_s = output.scores.v_comp_m_s;
+    for (int k = 106; k < 113; k++) {
+        saddle_measurement_t seen = striding(k);
+        const bool stumbles = k > 106 && k < 110;
+        seen.com.velocity_m_s.x += stumbles ? 1.5f : 0.0f;
+        for (int side = 0; side < 2; side++) {
+            seen.foot[side].cop_m.x -= stumbles ? 0.2f : 0.0f;
+        }
+        tick(&seen);
+        TEST_ASSERT_DOUBLE_WITHIN(0.12, (double)usual_m_s, output.scores.v_comp_m_s);
+    }
 }
 
 static void test_slow_ticks_and_equal_times_learn_nothing_absurd(void)
@@ -365,6 +469,25 @@ static void test_crossed_feet_and_flight_are_evidence_once_a_level_holds(void)
         TEST_ASSERT_TRUE(output.verdict.level != (uint8_t)SADDLE_LEVEL_UNKNOWN);
     }
     TEST_ASSERT_BITS_HIGH(SADDLE_FAULT_AIRBORNE, output.faults);
+}
+
+/* A tick that is lost in the midst of a cross-over step silences nothing but itself. */
+static void test_crossed_feet_stay_evidence_over_a_lost_tick_and_a_gap(void)
+{
+    const bool gaps[] = {false, true};
+    for (size_t i = 0; i < COUNT_OF(gaps); i++) {
+        setUp();
+        tick_until(0, 50);
+        for (int k = 50; k < 60; k++) {
+            saddle_measurement_t seen = striding(k);
+            seen.foot[SADDLE_LEFT].cop_m.y = -0.35f;
+            seen.com.age_us = !gaps[i] && k == 53 ? SADDLE_AGE_NEVER_US : 0u;
+            input.time_us += gaps[i] && k == 53 ? 300000u : 0u;
+            tick(&seen);
+            TEST_ASSERT_EQUAL(gaps[i] || k != 53, output.verdict.margin_known);
+        }
+        TEST_ASSERT_TRUE(output.verdict.level != (uint8_t)SADDLE_LEVEL_UNKNOWN);
+    }
 }
 
 /* From the first tick on crossed feet are sides that were swapped. */
@@ -479,15 +602,21 @@ int main(void)
     RUN_TEST(test_margin_of_random_walks_is_that_of_the_equations);
     RUN_TEST(test_level_and_reason_follow_the_margin);
     RUN_TEST(test_sinking_com_is_evidence);
+    RUN_TEST(test_collapse_over_the_feet_is_announced);
+    RUN_TEST(test_sitting_down_is_no_collapse_however_slow_the_sensor);
+    RUN_TEST(test_lost_foot_leaves_the_sinking_known);
+    RUN_TEST(test_com_below_the_knees_is_unstable_once_it_was_seen_above);
     RUN_TEST(test_height_before_a_gap_says_nothing_of_sinking);
     RUN_TEST(test_steady_walk_is_learned);
     RUN_TEST(test_tolerance_is_the_walker_s_own);
     RUN_TEST(test_push_teaches_no_tolerance);
     RUN_TEST(test_caution_band_is_the_walker_s_own);
     RUN_TEST(test_walking_speed_does_not_follow_a_fall);
+    RUN_TEST(test_walking_speed_does_not_follow_a_stumble_within_a_step);
     RUN_TEST(test_slow_ticks_and_equal_times_learn_nothing_absurd);
     RUN_TEST(test_falling_backward_without_a_walk_is_unstable);
     RUN_TEST(test_crossed_feet_and_flight_are_evidence_once_a_level_holds);
+    RUN_TEST(test_crossed_feet_stay_evidence_over_a_lost_tick_and_a_gap);
     RUN_TEST(test_feet_crossed_from_the_beginning_are_no_measurement);
     RUN_TEST(test_one_leg_and_feet_together_have_a_level);
     RUN_TEST(test_missing_inputs_are_unknown_at_once);

@@ -98,7 +98,7 @@ typedef struct {
 static void list_fields(field_t fields[FIELD_COUNT])
 {
     const field_t list[FIELD_COUNT] = {
-        {&measured.com.height_m, 0.285f * 1.79f, 1.79f, SADDLE_FAULT_COM_RANGE},
+        {&measured.com.height_m, 0.0f, 1.79f, SADDLE_FAULT_COM_RANGE},
         {&measured.com.velocity_m_s.x, -6.0f, 6.0f, SADDLE_FAULT_COM_RANGE},
         {&measured.com.velocity_m_s.y, -6.0f, 6.0f, SADDLE_FAULT_COM_RANGE},
         {&measured.foot[SADDLE_LEFT].cop_m.x, -2.5f, 2.5f, SADDLE_FAULT_LEFT_RANGE},
@@ -128,7 +128,8 @@ static void test_absurd_number_in_any_field_is_a_range_fault(void)
             *fields[i].number = ends[k];
             /* the left foot may well be right of the right one */
             const uint32_t crossed = (uint32_t)SADDLE_FAULT_FEET_CROSSED;
-            TEST_ASSERT_EQUAL_HEX32(0, judge_anew() & ~crossed);
+            const uint32_t low = (uint32_t)SADDLE_FAULT_COM_LOW;
+            TEST_ASSERT_EQUAL_HEX32(0, judge_anew() & ~(crossed | low));
         }
     }
 }
@@ -140,8 +141,13 @@ static void test_com_between_knees_and_head_goes_with_the_body(void)
     const struct {
         float height_m;
         uint32_t fault;
-    } table[] = {{0.34f, SADDLE_FAULT_COM_RANGE}, {0.35f, 0}, {0.68f, 0},
-                 {1.19f, 0}, {1.21f, SADDLE_FAULT_COM_RANGE}};
+    } table[] = {{-0.01f, SADDLE_FAULT_COM_RANGE},
+                 {0.1f, SADDLE_FAULT_COM_LOW},
+                 {0.34f, SADDLE_FAULT_COM_LOW},
+                 {0.35f, 0},
+                 {0.68f, 0},
+                 {1.19f, 0},
+                 {1.21f, SADDLE_FAULT_COM_RANGE}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         measured.com.height_m = table[i].height_m;
         TEST_ASSERT_EQUAL_HEX32(table[i].fault, judge_anew());

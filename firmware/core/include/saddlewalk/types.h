@@ -152,7 +152,7 @@ typedef struct {
 typedef enum {
     SADDLE_FAULT_COMMAND = 1u << 0, /**< not usable: the last good one holds */
     SADDLE_FAULT_COM_STALE = 1u << 1,   /**< older than com_max_age_s */
-    SADDLE_FAULT_COM_RANGE = 1u << 2,   /**< not finite or absurd; the CoM below the knees */
+    SADDLE_FAULT_COM_RANGE = 1u << 2,   /**< not finite or absurd */
     SADDLE_FAULT_LEFT_STALE = 1u << 3,  /**< older than foot_max_age_s */
     SADDLE_FAULT_LEFT_RANGE = 1u << 4,
     SADDLE_FAULT_RIGHT_STALE = 1u << 5,
@@ -165,13 +165,14 @@ typedef enum {
     SADDLE_FAULT_RIGHT_FROZEN = 1u << 11,
     SADDLE_FAULT_AIRBORNE = 1u << 12,     /**< both feet in the air for longer than flight_max_s */
     SADDLE_FAULT_FEET_CROSSED = 1u << 13, /**< by more than crossing_max_m */
-    SADDLE_FAULT_COMMAND_STALE = 1u << 14 /**< no usable one for command_max_age_s */
+    SADDLE_FAULT_COMMAND_STALE = 1u << 14, /**< no usable one for command_max_age_s */
+    SADDLE_FAULT_COM_LOW = 1u << 15 /**< the CoM below the knees: somebody lies, or an offset */
 } saddle_fault_t;
 
 /** Faults that leave the CoM, or the feet, without a measurement to use. */
 #define SADDLE_FAULTS_COM \
     ((uint32_t)SADDLE_FAULT_COM_STALE | (uint32_t)SADDLE_FAULT_COM_RANGE | \
-     (uint32_t)SADDLE_FAULT_COM_FROZEN)
+     (uint32_t)SADDLE_FAULT_COM_FROZEN | (uint32_t)SADDLE_FAULT_COM_LOW)
 #define SADDLE_FAULTS_LEFT \
     ((uint32_t)SADDLE_FAULT_LEFT_STALE | (uint32_t)SADDLE_FAULT_LEFT_RANGE | \
      (uint32_t)SADDLE_FAULT_LEFT_FROZEN)
@@ -342,7 +343,7 @@ typedef struct {
     float ripple;               /**< RMS of the sagittal velocity about its mean while walking, of
                                      sqrt(g height_m); starts at learn_ripple_start */
     float step_time_s, step_length_m, step_width_m;
-    float step_margin;          /**< usual lowest margin of a step */
+    float step_margin;          /**< usual lowest margin of a step, before the plan has a say, [E34] */
 } saddle_learned_walk_t;
 
 /* ---- a tick -------------------------------------------------------------------------------- */

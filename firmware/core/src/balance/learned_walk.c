@@ -8,6 +8,9 @@
 /* The time that one measurement stands for, at first. */
 #define FIRST_S 0.08f
 
+/* A height that keeps its bits for longer has stopped to change. */
+#define SAME_HEIGHT_MAX_S 0.24f
+
 /* For how long learn_ripple_start counts against what is seen. */
 #define RIPPLE_START_S 0.8f
 
@@ -41,23 +44,42 @@ void saddle_learning_gap(saddle_learning_t *learning)
     learning->climb_m_s = 0.0f;
 }
 
+/* Over the time since the last height that was another: a sensor may be slower than the ticks. */
+static void climb(saddle_learning_t *learning, float height_m)
+{
+    const float since_s = learning->same_height_s;
+    const float risen_m = height_m - learning->last_height_m;
+    if (since_s > 0.0f && (risen_m < 0.0f || risen_m > 0.0f)) {
+        const float share = saddle_clamp(since_s / FIRST_S, 0.0f, 1.0f);
+        learning->climb_m_s += share * (risen_m / since_s - learning->climb_m_s);
+        learning->last_height_m = height_m;
+        learning->same_height_s = 0.0f;
+    } else if (since_s > SAME_HEIGHT_MAX_S) {
+        learning->climb_m_s = 0.0f;
+    }
+}
+
 void saddle_learning_watch(saddle_learning_t *learning, const saddle_measurement_t *measurement,
                            float dt_s)
 {
-    const float height_m = measurement->com.height_m;
     learning->velocity_m_s = measurement->com.velocity_m_s;
+    if (learning->height_known) {
+        learning->same_height_s += dt_s;
+        climb(learning, measurement->com.height_m);
+    } else {
+        learning->last_height_m = measurement->com.height_m;
+        learning->same_height_s = 0.0f;
+        learning->height_known = true;
+    }
+}
+
+void saddle_learning_begin(saddle_learning_t *learning)
+{
     if (!learning->begun) {
         learning->begun = true;
         learning->walk.velocity_m_s = learning->velocity_m_s;
-        learning->walk.height_m = height_m;
+        learning->walk.height_m = learning->last_height_m;
     }
-    if (learning->height_known && dt_s > 0.0f) {
-        const float climb_m_s = (height_m - learning->last_height_m) / dt_s;
-        const float share = saddle_clamp(dt_s / FIRST_S, 0.0f, 1.0f);
-        learning->climb_m_s += share * (climb_m_s - learning->climb_m_s);
-    }
-    learning->last_height_m = height_m;
-    learning->height_known = true;
 }
 
 /* The plain mean at first, then one that forgets. */
@@ -118,15 +140,15 @@ void saddle_learning_update(saddle_learning_t *learning, const saddle_model_t *m
 }
 
 void saddle_learning_step(saddle_learning_t *learning, const saddle_step_tracker_t *steps,
-                          float margin)
+                          float own_margin)
 {
-    if (margin < learning->lowest_margin) {
-        learning->lowest_margin = margin;
+    if (own_margin < learning->lowest_margin) {
+        learning->lowest_margin = own_margin;
     }
     if (steps->struck) {
         if (learning->lowest_margin > 0.0f && steps->v_comp_known && steps->half_step_known) {
             learn_step(learning, steps);
         }
-        learning->lowest_margin = margin;
+        learning->lowest_margin = own_margin;
     }
 }

@@ -80,8 +80,8 @@ static decision_t decide(const saddle_verdict_t *verdict)
     if (!verdict->margin_known) {
         decision.level = SADDLE_LEVEL_UNKNOWN;
         decision.reason = SADDLE_REASON_INPUT;
-    } else if (verdict->margin <= verdict->caution_below) {
-        decision.level = verdict->margin <= 0.0f ? SADDLE_LEVEL_UNSTABLE : SADDLE_LEVEL_CAUTION;
+    } else if (!(verdict->margin > verdict->caution_below)) {
+        decision.level = verdict->margin > 0.0f ? SADDLE_LEVEL_CAUTION : SADDLE_LEVEL_UNSTABLE;
         decision.reason = (saddle_reason_t)verdict->driver;
     }
     return decision;

@@ -11,7 +11,8 @@ typedef struct {
     saddle_vec2_t offset; /**< of the CoM, predicted, from midway between the feet; across it is
                                weighted */
     float step;           /**< what the distance of the feet bears */
-    float sink;           /**< of a sinking CoM, at least 0 */
+    float sinking;        /**< how fast the CoM sinks, at least 0 */
+    float sink;           /**< the part of that that counts as a departure */
 } saddle_departure_t;
 
 /** [E33] CoM and both feet are known and learning has watched the CoM. */
@@ -27,11 +28,15 @@ float saddle_own_margin(const saddle_model_t *model, const saddle_learning_t *le
 float saddle_plan_margin(const saddle_model_t *model, const saddle_learning_t *learning,
                          const saddle_verdict_t *verdict);
 
+/** [E37] What a sinking CoM leaves of any margin, whatever the feet or a plan can do. */
+float saddle_sinking_margin(const saddle_departure_t *departure);
+
 /** The largest part of a departure. plan: what saddle_plan_margin() said, 0 for nobody led. */
 saddle_reason_t saddle_driver(const saddle_departure_t *departure, float plan);
 
-/** At and below this margin is caution: a share of what the wearer's steady steps keep, [E31];
- *  caution_margin before a step is known. */
-float saddle_caution_below(const saddle_model_t *model, const saddle_learning_t *learning);
+/** At and below this margin is caution: half of what the wearer's steady steps keep, caution_margin
+ *  before one is known, and half of what the plan adds, [E31]. */
+float saddle_caution_below(const saddle_model_t *model, const saddle_learning_t *learning,
+                           float plan);
 
 #endif

@@ -12,13 +12,13 @@ void saddle_supervisor_init(saddle_supervisor_t *supervisor, const saddle_model_
     saddle_learning_init(&supervisor->learning, model);
 }
 
-/* Crossed feet, or none on the ground, contradict the sensors of a wearer who was not seen before.
- * From then on they are what somebody does who is about to fall. */
+/* Crossed feet, no foot on the ground and a CoM below the knees contradict the sensors of a wearer who
+ * was not seen before. From then on they are what happens to somebody who falls. */
 static uint32_t missing(const saddle_supervisor_t *supervisor, uint32_t faults)
 {
-    const uint32_t evidence = (uint32_t)SADDLE_FAULT_AIRBORNE | (uint32_t)SADDLE_FAULT_FEET_CROSSED;
-    const bool seen = supervisor->level.level != (uint8_t)SADDLE_LEVEL_UNKNOWN;
-    return seen ? faults & ~evidence : faults;
+    const uint32_t evidence = (uint32_t)SADDLE_FAULT_AIRBORNE |
+                              (uint32_t)SADDLE_FAULT_FEET_CROSSED | (uint32_t)SADDLE_FAULT_COM_LOW;
+    return supervisor->learning.begun ? faults & ~evidence : faults;
 }
 
 static void no_margin(saddle_verdict_t *verdict)
@@ -29,19 +29,38 @@ static void no_margin(saddle_verdict_t *verdict)
     verdict->driver = (uint8_t)SADDLE_REASON_NONE;
 }
 
+static void bound_margin(saddle_verdict_t *verdict, float most)
+{
+    if (verdict->margin > most) {
+        verdict->margin = most;
+        verdict->driver = (uint8_t)SADDLE_REASON_SINKING;
+    }
+}
+
 /* Returns the margin before the plan has a say. on_plan: the wearer makes the planned step. */
-static float measure_margin(const saddle_model_t *model, const saddle_learning_t *learning,
+static float measure_margin(const saddle_model_t *model, saddle_learning_t *learning,
                             const saddle_measurement_t *measurement, bool on_plan,
                             saddle_verdict_t *verdict)
 {
+    saddle_learning_begin(learning);
     const saddle_departure_t departure = saddle_departure(model, learning, measurement);
     const float own = saddle_own_margin(model, learning, &departure);
     const float plan = on_plan ? saddle_plan_margin(model, learning, verdict) : 0.0f;
     verdict->margin_known = true;
     verdict->margin = own + plan;
-    verdict->caution_below = saddle_caution_below(model, learning);
+    verdict->caution_below = saddle_caution_below(model, learning, plan);
     verdict->driver = (uint8_t)saddle_driver(&departure, plan);
+    bound_margin(verdict, saddle_sinking_margin(&departure));
     return own;
+}
+
+static void learn(saddle_supervisor_t *supervisor, const saddle_model_t *model, float own_margin,
+                  float dt_s)
+{
+    saddle_step_tracker_t *steps = &supervisor->steps;
+    saddle_learning_update(&supervisor->learning, model, own_margin, dt_s);
+    saddle_learning_step(&supervisor->learning, steps, own_margin);
+    steps->disturbed = steps->disturbed || own_margin <= model->config.learn_margin;
 }
 
 void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s)
@@ -89,15 +108,18 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
         on_plan = saddle_compare(model, &wearer, intent, verdict);
     }
     no_margin(verdict);
-    if (com_known && feet_known) {
-        saddle_learning_t *learning = &supervisor->learning;
-        saddle_learning_watch(learning, measurement, dt_s);
-        const float own = measure_margin(model, learning, measurement, on_plan, verdict);
-        saddle_learning_update(learning, model, own, dt_s);
-        saddle_learning_step(learning, steps, verdict->margin);
-        steps->disturbed = own <= model->config.learn_margin;
+    if (com_known) {
+        saddle_learning_watch(&supervisor->learning, measurement, dt_s);
     } else {
         saddle_learning_gap(&supervisor->learning);
+    }
+    if (com_known && feet_known) {
+        const float own = measure_margin(model, &supervisor->learning, measurement, on_plan, verdict);
+        if ((faults & (uint32_t)SADDLE_FAULT_COM_LOW) == 0u) {
+            learn(supervisor, model, own, dt_s);
+        } else {
+            bound_margin(verdict, 0.0f);
+        }
     }
     saddle_level_update(&supervisor->level, model, all_faults, scores, verdict);
     return all_faults;

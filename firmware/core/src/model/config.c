@@ -67,7 +67,7 @@ static const saddle_config_field_t FIELDS[] = {
     FIELD(caution_margin, 0.0f, 1.0f),
     FIELD(learn_time_s, 0.1f, 60.0f),
     FIELD(learn_ripple_time_s, 0.1f, 600.0f),
-    FIELD(learn_ripple_start, 0.001f, 0.5f),
+    FIELD(learn_ripple_start, 0.005f, 0.5f),
     FIELD(learn_margin, 0.0f, 1.0f),
     FIELD(previous_level, 0.0f, 1.0f),
     FIELD(caution_score, -10.0f, 1.0f),
@@ -218,6 +218,12 @@ const char *saddle_config_check(const saddle_config_t *config)
     }
     if ((unsigned)config->ankle >= (unsigned)SADDLE_ANKLE_COUNT) {
         return "ankle";
+    }
+    if (config->tolerance_min > config->tolerance_max) {
+        return "tolerance_min";
+    }
+    if (config->learn_margin >= config->tolerance_max) {
+        return "learn_margin";
     }
     if (config->recovery_width_min_m > config->recovery_width_max_m) {
         return "recovery_width_min_m";

@@ -45,12 +45,12 @@ static uint32_t check_com(const saddle_model_t *model, const saddle_measurement_
     if ((float)measurement->com.age_us > model->body.com_max_age_us) {
         return (uint32_t)SADDLE_FAULT_COM_STALE;
     }
-    if (!saddle_in_range(measurement->com.height_m, model->body.com_height_min_m,
-                         model->config.body_height_m) ||
+    if (!saddle_in_range(measurement->com.height_m, 0.0f, model->config.body_height_m) ||
         !vec2_within(measurement->com.velocity_m_s, COM_SPEED_MAX_M_S)) {
         return (uint32_t)SADDLE_FAULT_COM_RANGE;
     }
-    return 0;
+    return measurement->com.height_m < model->body.com_height_min_m ? (uint32_t)SADDLE_FAULT_COM_LOW
+                                                                    : 0u;
 }
 
 static uint32_t check_foot(const saddle_model_t *model, const saddle_measurement_t *measurement,

@@ -1,5 +1,10 @@
 #include "sense/step_tracker.h"
 
+#include "math/elementary.h"
+
+/* A disturbed step changes the walking speed by no more. */
+#define DISTURBED_CHANGE_M_S 0.1f
+
 /* Contact that is lost for less did not end a stance: nobody swings a leg so fast. */
 #define SWING_MIN_S 0.12f
 
@@ -34,12 +39,15 @@ static void follow_speed(saddle_step_tracker_t *tracker, bool velocity_known, fl
     if (!strike) {
         return;
     }
-    const bool holds = tracker->disturbed && tracker->v_comp_known;
+    const float known_m_s = tracker->v_comp_m_s;
+    const bool bounded = tracker->disturbed && tracker->v_comp_known;
     tracker->v_comp_known = false;
+    tracker->disturbed = false;
     if (tracker->step_open && tracker->step_duration_s > 0.0f) {
-        if (!holds) {
-            tracker->v_comp_m_s = tracker->step_distance_m / tracker->step_duration_s;
-        }
+        const float mean_m_s = tracker->step_distance_m / tracker->step_duration_s;
+        tracker->v_comp_m_s = bounded ? saddle_clamp(mean_m_s, known_m_s - DISTURBED_CHANGE_M_S,
+                                                     known_m_s + DISTURBED_CHANGE_M_S)
+                                      : mean_m_s;
         tracker->step_time_s = tracker->step_duration_s;
         tracker->v_comp_known = true;
         tracker->stands = false;
@@ -120,5 +128,6 @@ void saddle_track_gap(saddle_step_tracker_t *tracker, float gap_s)
 {
     tracker->step_open = false;
     tracker->stands = false;
+    tracker->disturbed = false;
     tracker->since_strike_s += gap_s;
 }

@@ -154,7 +154,8 @@ typedef struct {
 typedef struct {
     float step_distance_m, step_duration_s; /**< since the last heel strike */
     float last_velocity_m_s;
-    float v_comp_m_s;      /**< mean AP speed over the last completed step that was undisturbed */
+    float v_comp_m_s;      /**< mean AP speed over the last completed step; after a disturbed one it
+                                has changed by 0.1 m/s at most */
     float step_time_s;     /**< of the last completed step; known with v_comp_m_s */
     float half_step_m;     /**< half of what the landed foot was ahead at the last heel strike */
     float step_width_m;    /**< of the feet then, left minus right */
@@ -163,8 +164,8 @@ typedef struct {
     bool step_open;        /**< a heel strike was seen and the velocity was known ever since */
     bool v_comp_known, half_step_known; /**< step_width_m goes with half_step_m */
     bool struck;           /**< a heel strike came with the last measurement */
-    bool disturbed;        /**< set by the supervisor: the step now made tells no walking speed, so
-                                that v_comp_m_s does not follow a fall */
+    bool disturbed;        /**< set by the supervisor, until a heel strike: v_comp_m_s hardly follows
+                                the step now made, so that it does not follow a fall */
     bool stands;           /**< was seen to stand, and no step was completed since */
     uint8_t stance;        /**< saddle_side_t: the only foot on the ground, else the one that landed last */
 } saddle_step_tracker_t;
@@ -184,10 +185,11 @@ typedef struct {
     saddle_vec2_t velocity_m_s; /**< last measured */
     float ripple_square;
     float watched_s, walked_s; /**< learned from, up to the forgetting time */
-    float last_height_m, climb_m_s; /**< vertical velocity of the CoM, over a tick of 80 ms */
+    float last_height_m, same_height_s; /**< the last that was new, and since when */
+    float climb_m_s;           /**< vertical velocity of the CoM, over 80 ms */
     float lowest_margin;       /**< since the last heel strike */
     bool height_known;         /**< the last tick measured the CoM */
-    bool begun;
+    bool begun;                /**< a margin was known */
 } saddle_learning_t;
 
 typedef struct {
