@@ -228,7 +228,7 @@ def test_a_recovery_step_goes_to_its_place_and_no_faster_than_the_leg():
     wearer.follow(plan_with(None))
     while wearer.feet[LEFT].contact:
         wearer.step()
-    step = RecoveryStep(LEFT, 0.7 + 0.5j, urgent=False)
+    step = RecoveryStep(LEFT, 0.7 + 0.5j, xcom_deviation_m=0j)
     wearer.follow(plan_with(step))
     while not wearer.feet[LEFT].contact:
         wearer.step()

@@ -86,8 +86,9 @@ def plan_of(output: Any) -> Plan:
 
 def _recovery_of(verdict: Any) -> RecoveryStep | None:
     step = verdict.recovery
-    urgent = verdict.level != core.library().SADDLE_LEVEL_STABLE
-    return RecoveryStep(step.foot, _point(step.landing_m), urgent) if step.found else None
+    if not step.found:
+        return None
+    return RecoveryStep(step.foot, _point(step.landing_m), _point(verdict.xcom_deviation_m))
 
 
 def _point(vector: Any) -> complex:

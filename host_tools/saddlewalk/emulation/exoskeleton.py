@@ -19,7 +19,6 @@ from saddlewalk.planning.schedule import Schedule
 from saddlewalk.ticks import PLAN_MESSAGES, FrameBus, Messages, TickReader, next_tick
 from saddlewalk.transport.authentication import Authenticator
 from saddlewalk.transport.wire import Sender, identifier
-from saddlewalk.verdict import level_name
 
 SILENCE_S = 3.0
 START_TICKS = 125  # that do not do as commanded, before a walk is given up: 10 s
@@ -78,12 +77,11 @@ def plan_of(messages: Messages) -> Plan | None:
 
 
 def _recovery_of(messages: Messages) -> RecoveryStep | None:
-    recovery, level = messages["RECOVERY"], level_name(int(messages["VERDICT"]["LEVEL"]))
-    if not recovery["FOUND"]:
+    step, verdict = messages["RECOVERY"], messages["VERDICT"]
+    if not step["FOUND"]:
         return None
-    return RecoveryStep(
-        int(recovery["FOOT"]), complex(recovery["X"], recovery["Y"]), level != "stable"
-    )
+    deviation_m = complex(verdict["XCOM_DEVIATION_X"], verdict["XCOM_DEVIATION_Y"])
+    return RecoveryStep(int(step["FOOT"]), complex(step["X"], step["Y"]), deviation_m)
 
 
 class Exoskeleton:

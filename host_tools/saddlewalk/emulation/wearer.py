@@ -24,6 +24,7 @@ STANCE_M = 0.11  # from the middle to each foot of a wearer who stands and waits
 SPEED_MIN_M_S = 0.01  # slower steps last as long as if so fast
 REST_SHARE = 1 - 2 / math.pi  # of the way to the middle, from the foot over which a walk ends
 NEARBY_M = 0.08 + 0.05j  # a recovery step so near to the planned one is not worth leaving that
+IN_NEED_M = 0.13 + 0.07j  # an XCoM off the planned one by more makes the wearer hurry
 ARRIVED_M = 0.02  # and lands this near to its place
 
 
@@ -109,7 +110,7 @@ class RecoveryStep:
 
     foot: int
     landing_m: complex  # from the stance CoP
-    urgent: bool  # the wearer was not announced stable
+    xcom_deviation_m: complex  # from the planned one
 
 
 @dataclass(frozen=True)
@@ -482,7 +483,9 @@ class Wearer:
             planned_m = plan.landing_m - plan.feet_m[1 - side]
             shift_m = _limited(step.landing_m, reach_m) - planned_m
             self._recovery_shift_m = 0j if shift_m == _limited(shift_m, NEARBY_M) else shift_m
-            self._hurries = step.urgent and self._recovery_shift_m != 0
+            deviation_m = step.xcom_deviation_m
+            in_need = deviation_m != _limited(deviation_m, IN_NEED_M)
+            self._hurries = in_need and self._recovery_shift_m != 0
         return self._recovery_shift_m
 
     def _turn_to(self, detour_m: complex) -> None:

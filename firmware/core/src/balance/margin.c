@@ -11,8 +11,8 @@
 
 /* Nobody catches a CoM that sinks faster, in sqrt(g h): of the pushed walks of two simulated robots
  * that went on, the fastest sank at 0.29, and sitting down takes less (2026-11). */
-#define SINKING_MAX 0.4f
-#define SINKING_WEIGHT 2.0f
+#define SINKING_MAX 0.36f
+#define SINKING_WEIGHT 6.0f
 
 /* A caution begins at this share of the usual lowest margin of a step, within these shares of
  * caution_margin. */
