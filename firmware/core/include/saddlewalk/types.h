@@ -90,7 +90,8 @@ typedef struct {
     float tolerance_max;              /**< departure that a walker of even speed bears, [E34] */
     float tolerance_ripple_slope;     /**< less tolerance per ripple of the speed, [E34] */
     float tolerance_min;              /**< and no less than this, [E34] */
-    float plan_reserve;               /**< added for a wearer on a plan, [E35] */
+    float plan_weight;                /**< of what the step to come can do, for a wearer on a plan, [E35] */
+    float plan_reserve;               /**< and added to that */
     float caution_margin;             /**< a margin below it is a caution, [E31] */
     float learn_time_s;               /**< forgetting time of mean velocity and height, [E32] */
     float learn_ripple_time_s;        /**< and of the ripple, [E32] */

@@ -66,8 +66,9 @@ float saddle_plan_margin(const saddle_model_t *model, const saddle_learning_t *l
     const float per_height = 1.0f / learning->walk.height_m;
     const float recovery = verdict->recovery.margin_m * per_height;
     const float landing = verdict->ebos_com_m * per_height;
-    return saddle_clamp(recovery, PLAN_MARGIN_MIN, PLAN_MARGIN_MAX) +
-           saddle_clamp(landing, PLAN_MARGIN_MIN, PLAN_MARGIN_MAX) + model->config.plan_reserve;
+    const float caught = saddle_clamp(recovery, PLAN_MARGIN_MIN, PLAN_MARGIN_MAX) +
+                         saddle_clamp(landing, PLAN_MARGIN_MIN, PLAN_MARGIN_MAX);
+    return model->config.plan_weight * caught + model->config.plan_reserve;
 }
 
 /* [E37] */
