@@ -98,7 +98,7 @@ typedef struct {
 static void list_fields(field_t fields[FIELD_COUNT])
 {
     const field_t list[FIELD_COUNT] = {
-        {&measured.com.height_m, 0.0f, 1.79f, SADDLE_FAULT_COM_RANGE},
+        {&measured.com.height_m, 0.05f, 1.79f, SADDLE_FAULT_COM_RANGE},
         {&measured.com.velocity_m_s.x, -6.0f, 6.0f, SADDLE_FAULT_COM_RANGE},
         {&measured.com.velocity_m_s.y, -6.0f, 6.0f, SADDLE_FAULT_COM_RANGE},
         {&measured.foot[SADDLE_LEFT].cop_m.x, -2.5f, 2.5f, SADDLE_FAULT_LEFT_RANGE},
@@ -141,7 +141,7 @@ static void test_com_between_knees_and_head_goes_with_the_body(void)
     const struct {
         float height_m;
         uint32_t fault;
-    } table[] = {{-0.01f, SADDLE_FAULT_COM_RANGE},
+    } table[] = {{0.0f, SADDLE_FAULT_COM_RANGE},
                  {0.1f, SADDLE_FAULT_COM_LOW},
                  {0.34f, SADDLE_FAULT_COM_LOW},
                  {0.35f, 0},

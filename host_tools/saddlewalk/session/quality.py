@@ -41,8 +41,8 @@ FAULT_WORDS = {
     "RIGHT_FROZEN": "the right foot's measurement stays the same while the CoM moves",
     "AIRBORNE": "both feet are in the air for too long",
     "FEET_CROSSED": "the feet are crossed",
-    "COM_LOW": "the CoM is below the knees",
     "COMMAND_STALE": "no command that can be used came for too long",
+    "COM_LOW": "the CoM is below the knees",
 }
 LIMIT_WORDS = {
     "SPEED": "the commanded speed is not feasible: the nearest that is was planned",

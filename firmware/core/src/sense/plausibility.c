@@ -5,6 +5,9 @@
 
 #include <saddlewalk/saddlewalk.h>
 
+/* Not even a body that lies has its CoM nearer to the ground. */
+#define COM_HEIGHT_MIN_M 0.05f
+
 /* Beyond these a measurement of a person who stands or walks is absurd. */
 #define COM_SPEED_MAX_M_S 6.0f
 #define COP_DISTANCE_MAX_M 2.5f
@@ -45,7 +48,7 @@ static uint32_t check_com(const saddle_model_t *model, const saddle_measurement_
     if ((float)measurement->com.age_us > model->body.com_max_age_us) {
         return (uint32_t)SADDLE_FAULT_COM_STALE;
     }
-    if (!saddle_in_range(measurement->com.height_m, 0.0f, model->config.body_height_m) ||
+    if (!saddle_in_range(measurement->com.height_m, COM_HEIGHT_MIN_M, model->config.body_height_m) ||
         !vec2_within(measurement->com.velocity_m_s, COM_SPEED_MAX_M_S)) {
         return (uint32_t)SADDLE_FAULT_COM_RANGE;
     }
