@@ -546,7 +546,7 @@ static void test_plan_adds_what_the_step_to_come_can_do(void)
         for (size_t j = 0; j < COUNT_OF(margins); j++) {
             saddle_verdict_t verdict = {.ebos_com_m = margins[j]};
             verdict.recovery.margin_m = margins[i];
-            TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0 * (parts[i] + parts[j]) + 0.3,
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0 * (parts[i] + parts[j]) + 0.45,
                                       saddle_plan_margin(model_of(&config), &learning, &verdict));
         }
     }

@@ -134,7 +134,7 @@ saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg)
         .tolerance_ripple_slope = 2.4f,
         .tolerance_min = 0.25f,
         .plan_weight = 2.0f,
-        .plan_reserve = 0.3f,
+        .plan_reserve = 0.45f,
         .caution_margin = 0.1f,
         .learn_time_s = 1.0f,
         .learn_ripple_time_s = 4.0f,
