@@ -1,7 +1,7 @@
-"""Files that are there once all is written, and until then are what they were.
+"""Atomic writing: files are replaced when all is written, and stay as they were until then.
 
-What is written goes to a new file or folder beside and is renamed at the end, so that a command
-that fails or is ended, whenever and by whatever, costs nothing that was there before.
+Output goes to a new file or folder in the same place, which is renamed at the end. A command that
+fails or is killed never damages existing files.
 """
 
 import contextlib
@@ -26,7 +26,7 @@ ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def own_descriptor(path: str | Path) -> int | None:
-    """The number of what this process has open already: of /dev/stdout, /dev/fd/3 and the like."""
+    """The descriptor of a path such as /dev/stdout or /dev/fd/3, which is open already."""
     standard = {"/dev/stdin": STDIN, "/dev/stdout": STDOUT, "/dev/stderr": STDERR}
     if str(path) in standard:
         return standard[str(path)]
@@ -38,10 +38,10 @@ def own_descriptor(path: str | Path) -> int | None:
 
 @contextlib.contextmanager
 def atomic_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO[Any]]:
-    """A file that is at `path` once all is written; "-": standard output.
+    """A file that appears at `path` when all is written; "-": standard output.
 
-    What is no ordinary file, or is open already, is written to and not replaced. Raises UserError,
-    naming the option, if it cannot be written.
+    Special files, and those that are open already, are written to and not replaced. Raises
+    UserError, naming the option, if it cannot be written.
     """
     if str(path) == "-":
         if "b" not in mode:
@@ -58,16 +58,16 @@ def atomic_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO[A
 
 
 def write_text(option: str, path: str | Path, text: str) -> None:
-    """Write to a atomic_file()."""
+    """Write to an atomic_file()."""
     with atomic_file(option, path) as file:
         file.write(text)
 
 
 @contextlib.contextmanager
 def atomic_folder(option: str, folder: Path, names: Sequence[str]) -> Iterator[Path]:
-    """A new folder whose files come to `folder` once all are written.
+    """A new folder whose files are moved to `folder` when all are written.
 
-    Files of `names` in `folder` that are not written again are removed: they are of another run.
+    Files of `names` in `folder` that are not written again are of an earlier run and are removed.
     No other file is touched. Raises UserError, naming the option, if it cannot be written.
     """
     try:
@@ -80,10 +80,10 @@ def atomic_folder(option: str, folder: Path, names: Sequence[str]) -> Iterator[P
 
 
 class RunFolder:
-    """A atomic_folder() for what cannot be had again: files that grow while something happens.
+    """An atomic_folder() for recordings, which cannot be repeated.
 
-    They grow in FOLDER/unfinished. A run that fails or is ended stays there if FOLDER holds an
-    earlier run, and else comes to FOLDER as far as it went.
+    Files are written in FOLDER/unfinished. An interrupted run stays there if FOLDER has an earlier
+    run, and is moved to FOLDER otherwise.
     """
 
     def __init__(self, option: str, folder: Path, names: Sequence[str]) -> None:
@@ -94,7 +94,7 @@ class RunFolder:
 
     @property
     def earlier(self) -> list[str]:
-        """The names that are there of an earlier run."""
+        """The files of an earlier run."""
         return [name for name in self._names if _is_there(self.folder / name)]
 
     def start(self) -> Path:
@@ -135,7 +135,7 @@ class RunFolder:
         except OSError as error:
             words = f"{error.strerror}: the run is in {self._new}"
             raise UserError(f"{self._option} {self.folder}: {words}") from error
-        with contextlib.suppress(OSError):  # somebody has put a file of their own there
+        with contextlib.suppress(OSError):  # it has a file of the user's
             self._new.rmdir()
 
 
@@ -165,7 +165,7 @@ def _open(path: Path, mode: str) -> Iterator[IO[Any]]:
 
 
 def _permissions(path: Path) -> int:
-    """Those of the file that is there, else those of a new one."""
+    """Of the existing file, else of a new one."""
     if path.exists():
         return stat.S_IMODE(path.stat().st_mode)
     mask = os.umask(0)
@@ -178,7 +178,7 @@ def _is_there(path: Path) -> bool:
 
 
 def _replace(folder: Path, new: Path, names: Sequence[str]) -> None:
-    """Move the files of `names` in `new` to `folder`, in the place of all those there, or none."""
+    """Move the files of `names` in `new` to `folder`, replacing all those there, or none."""
     with _uninterrupted():
         old = Path(tempfile.mkdtemp(dir=folder, prefix=".old."))
         moves = [(folder / name, old / name) for name in names if _is_there(folder / name)]
@@ -206,7 +206,7 @@ def _move_all(moves: Sequence[tuple[Path, Path]]) -> None:
 
 @contextlib.contextmanager
 def _uninterrupted() -> Iterator[None]:
-    """Ctrl-C, SIGTERM and SIGHUP wait until the end."""
+    """Delay Ctrl-C, SIGTERM and SIGHUP until the end."""
     came: list[int] = []
     before = {number: signal.getsignal(number) for number in ENDING}
     for number, handler in before.items():

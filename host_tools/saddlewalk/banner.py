@@ -1,7 +1,7 @@
-"""Words three lines high, to be read from across the room."""
+"""Words in letters of three lines."""
 
 GAP = " "
-# Row by row; as many letters as the names of the levels, and a fall, need.
+# Row by row; the letters of the levels' names and of FELL.
 LETTERS = {
     "A": ("▄▀▄", "█▀█", "▀ ▀"),
     "B": ("█▀▄", "█▀▄", "▀▀ "),
@@ -21,7 +21,7 @@ LETTERS = {
 
 
 def banner(word: str) -> str:
-    """Three lines of text; a word with a letter that is not here stays as it is."""
+    """Three lines of text; a word with a letter that is missing here is returned unchanged."""
     if not set(word) <= LETTERS.keys():
         return word
     letters = [LETTERS[letter] for letter in word]

@@ -16,7 +16,7 @@ from saddlewalk.printable import printable
 
 
 class _Parser(argparse.ArgumentParser):
-    """A wrong option is one line, not a page of usage."""
+    """Reports a wrong option in one line."""
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {printable(message)} (see {self.prog} --help)\n")
@@ -25,7 +25,7 @@ class _Parser(argparse.ArgumentParser):
 def parser() -> argparse.ArgumentParser:
     root = _Parser(
         prog="saddlewalk",
-        description="Plan a walk and judge its stability on the embedded core, live or offline.",
+        description="Plan a walk and score its stability with the embedded core, live or offline.",
     )
     root.add_argument("--version", action="version", version=f"saddlewalk {__version__}")
     subparsers = root.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -37,14 +37,14 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _end_cleanly() -> None:
-    """SIGTERM and SIGHUP end a command as Ctrl-C does: the firmware is ended, logs are closed."""
+    """SIGTERM and SIGHUP end a command as Ctrl-C does: the firmware is stopped, logs are closed."""
     for number in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, signal.default_int_handler)
 
 
 def _forget_output() -> None:
-    """What standard output still holds cannot be written; the interpreter shall not try."""
+    """Discard what standard output still buffers, since it cannot be written."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -66,7 +66,9 @@ def main(argv: list[str] | None = None) -> int:
     except BrokenPipeError:
         _forget_output()
         return 1
-    except OSError as error:  # what no command foresaw, as a full disk under standard output
+    except (
+        OSError
+    ) as error:  # not handled by the command, such as a full disk under standard output
         print(f"saddlewalk {args.command}: {printable(error)}", file=sys.stderr)
         _forget_output()
         return 2

@@ -1,6 +1,6 @@
-"""What the firmware's headers say: the names of its numbers, and its constants.
+"""Names and constants from the firmware's headers.
 
-Nothing of it is written here a second time, so that nothing here can differ from the firmware.
+Nothing is repeated here, so nothing can differ from the firmware.
 """
 
 from saddlewalk.core import defined, ffi
@@ -47,14 +47,14 @@ STANDING, STARTING, WALKING, STOPPING = map(
 UNKNOWN, STABLE, CAUTION, UNSTABLE = map(LEVELS.index, ("unknown", "stable", "caution", "unstable"))
 
 GRAVITY_M_S2 = defined("SADDLE_GRAVITY_M_S2")
-TIME_MAX_S = defined("SADDLE_TIME_MAX_S")  # an event of a plan that is not foreseen
+TIME_MAX_S = defined("SADDLE_TIME_MAX_S")  # of an event that is not predicted
 TICK_US = int(defined("SADDLE_TICK_US", "port_common/timing.h"))
 TICK_S = TICK_US / 1e6
 OUTPUT_FRAMES = int(defined("SADDLE_WIRE_OUTPUT_FRAMES", "wire/include/saddlewalk/wire.h"))
 
 
 def name_of(number: int, names: tuple[str, ...], kind: str = "") -> str:
-    """A number of other firmware is given as such, behind what it is."""
+    """An unknown number, of other firmware, is given as `kind number`."""
     return names[number] if 0 <= number < len(names) else f"{kind} {number}".strip()
 
 

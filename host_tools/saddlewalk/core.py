@@ -28,7 +28,7 @@ def library() -> Any:
 
 
 def defined(name: str, header: str = "core/include/saddlewalk/types.h") -> float:
-    """The number that a header of the firmware gives a macro, which cffi does not see."""
+    """The value of a macro in a header, which cffi does not read."""
     need_checkout()
     text = (CHECKOUT / "firmware" / header).read_text()
     (number,) = re.findall(rf"^#define {name} ([0-9.]+)[fu]?$", text, re.MULTILINE)
@@ -37,7 +37,7 @@ def defined(name: str, header: str = "core/include/saddlewalk/types.h") -> float
 
 @dataclass(frozen=True)
 class Measurement:
-    """One instant of a wearer. CoPs are relative to the CoM, metres; None is not measured."""
+    """A wearer at one instant. CoPs are relative to the CoM, in metres; None: not measured."""
 
     com_height_m: float | None = None
     com_velocity_m_s: tuple[float, float] | None = None
@@ -67,14 +67,14 @@ class Core:
         library().saddle_init(self._context, config)
 
     def join(self, command: Command) -> None:
-        """saddle_join(): as if a steady walk were under way, at the left foot via point."""
+        """saddle_join(): begin in a steady walk, at the left foot via point."""
         self._command(self._input.command, command)
         status = library().saddle_join(self._context, ffi().addressof(self._input, "command"))
         if status != library().SADDLE_OK:
             raise ValueError(f"saddle_join at {command.speed_m_s} m/s: status {status}")
 
     def tick(self, time_us: int, command: Command, measurement: Measurement) -> Any:
-        """One saddle_tick(): a saddle_output_t of its own. Raises ValueError on a refused call."""
+        """One saddle_tick(): returns a new saddle_output_t. Raises ValueError if it is rejected."""
         output = ffi().new("saddle_output_t *")
         self._input.time_us = time_us
         self._command(self._input.command, command)

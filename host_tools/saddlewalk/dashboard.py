@@ -1,9 +1,8 @@
-"""What the firmware says about one walk, for people: `render` for a terminal, `summary` as a line.
+"""The state of one walk from the firmware's messages: `render` for a terminal, `summary` as a line.
 
-Both lead with the level and the margin that decides it. They draw what the messages hold and judge
-nothing, except that silence makes the level unknown, and that
-no score says anything after a fall. Colour repeats a word or the sign of a number and is never the
-only sign of anything.
+Both begin with the level and the margin that decides it. They only display the messages, with two
+exceptions: silence makes the level unknown, and scores are not shown after a fall. Colour is never
+the only sign: it repeats a word or the sign of a number.
 """
 
 import itertools
@@ -44,7 +43,7 @@ MISSING = {
 SCORES = (("S_pend", "s_pend"), ("S_jump", "s_jump"), ("S_SW", "s_sw"))
 MARGINS = (("CoM in BoS", "mos_com_m"), ("XCoM in BoS", "mos_xcom_m"))
 EXPECTED = (("CoM in E-BoS", "ebos_com_m"), ("XCoM in E-BoS", "ebos_xcom_m"))
-FELL = "fell"  # in the place of a level
+FELL = "fell"  # instead of a level
 LEVEL_STYLES = dict(zip(LEVELS, ("magenta", "green", "yellow", "red"), strict=True))
 LEVEL_STYLES[FELL] = "red"
 MARGIN_SCALE_M = 0.4
@@ -65,8 +64,8 @@ class Heard:
     balance: Any = None
     health: Any = None
     status: Any = None
-    silent_s: float = 0.0  # for how long nothing came
-    fallen: bool = False  # the wearer lies on the ground
+    silent_s: float = 0.0  # since the last message
+    fallen: bool = False  # the wearer is on the ground
 
     @property
     def nothing(self) -> bool:
@@ -123,9 +122,9 @@ def summary(heard: Heard) -> str:
 
 
 def announced(heard: Heard) -> tuple[str, str]:
-    """The level and what decided it, in words. What is old is not known any more."""
+    """The level and what decided it, as text; unknown if the messages are old."""
     if heard.fallen:
-        return FELL, "the wearer lies on the ground, scores are not available"
+        return FELL, "the wearer is on the ground, scores are not available"
     if heard.silent_s > SILENT_AFTER_S:
         return LEVELS[UNKNOWN], waiting(heard.silent_s)
     if heard.verdict is None:
@@ -169,12 +168,12 @@ def gait(plan: Any) -> str:
 
 
 def _heel_strike(plan: Any) -> str:
-    foreseen = plan.time_to_heel_strike_s < TIME_MAX_S
-    return f"heel strike in {plan.time_to_heel_strike_s:.2f} s" if foreseen else "no heel strike"
+    predicted = plan.time_to_heel_strike_s < TIME_MAX_S
+    return f"heel strike in {plan.time_to_heel_strike_s:.2f} s" if predicted else "no heel strike"
 
 
 def energy(verdict: Any) -> str:
-    """What there is beyond a stop and beyond the plan, and whether the ankles can take it."""
+    """Excess energy to stop and to the plan, and whether the ankles can absorb it."""
     if verdict is None:
         return NOT_AVAILABLE
     parts = (
@@ -190,11 +189,11 @@ def energy(verdict: Any) -> str:
 
 
 def recovery_step(verdict: Any) -> str:
-    """Where to put which foot, or that no place within reach will do."""
+    """Where to put which foot, or that no place within reach suffices."""
     if verdict is None or not verdict.compared:
         return NOT_AVAILABLE
     if not verdict.recovery_found:
-        return f"none within reach, {-verdict.recovery_margin_m:.2f} m lacking"
+        return f"none within reach, {-verdict.recovery_margin_m:.2f} m short"
     foot = verdict.recovery_foot == verdict.RIGHT
     x_m, y_m = verdict.recovery_landing_m
     return (
@@ -206,7 +205,7 @@ def recovery_step(verdict: Any) -> str:
 
 
 def condition(health: Any) -> str:
-    """Whether the firmware keeps its time and gets good data."""
+    """Timing and input data of the firmware."""
     if health is None:
         return "health: none yet"
     age_us = health.measurement_age_us
@@ -232,12 +231,12 @@ def condition(health: Any) -> str:
 
 
 def safe_stop(health: Any) -> str:
-    """That the firmware ends the walk by itself, and for want of what; empty otherwise."""
+    """Why the firmware stops the walk by itself; empty if it does not."""
     if not health.limits >> LIMITS.index("SAFE_STOP") & 1:
         return ""
     faults = bit_names(health.faults, FAULTS)
     missing = [words for fault, words in MISSING.items() if fault in faults]
-    why = " and ".join(missing) + " missing" if missing else "inputs not yet good for long enough"
+    why = " and ".join(missing) + " missing" if missing else "inputs not yet valid for long enough"
     return f"; SAFE STOP, the walk ends: {why}"
 
 
@@ -290,7 +289,7 @@ def _no_bar(cells: int) -> Text:
 
 
 def score_bar(value: float) -> Text:
-    """A score: empty at 0 (the limit of stability) and below, full at 1 (the reference)."""
+    """A score: empty at and below 0 (the limit of stability), full at 1 (the reference)."""
     if math.isnan(value):
         return _no_bar(BAR_CELLS)
     cells = round(min(max(value, 0.0), 1.0) * BAR_CELLS)

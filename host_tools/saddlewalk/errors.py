@@ -1,5 +1,5 @@
-"""The one error that is meant for the person who typed the command."""
+"""The error for the user of a command."""
 
 
 class UserError(Exception):
-    """Names the thing, the value, and what would be right, in one line. Exit status 2."""
+    """One line that names the object, the value and what is accepted. Exit status 2."""

@@ -28,7 +28,7 @@ def library() -> Any:
 
 
 def default_config() -> Any:
-    """A saddle_config_t of this library, to be filled."""
+    """A saddle_config_t of this library, to fill."""
     config = ffi().new("saddle_config_t *")
     config[0] = library().saddle_config_default(1.0, 1.0)
     return config
@@ -74,7 +74,7 @@ class Firmware:
     def frames(self, counter: int, late_ticks: int, rejected_frames: int) -> dict[int, bytes]:
         """The last output as the host sends it on CAN: identifier -> data.
 
-        Without the messages that tell only of the host process, which no input decides.
+        Without messages about the host process itself, which do not follow from the inputs.
         """
         frames = ffi().new("saddle_frame_t[]", OUTPUT_FRAMES)
         health = ffi().new("saddle_wire_health_t *")

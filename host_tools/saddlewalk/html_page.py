@@ -19,7 +19,7 @@ td strong { color: #b03000; }
 
 
 def page(title: str, markdown: str, pictures: Mapping[str, bytes]) -> str:
-    """The HTML of a page. Bold in a table cell is what the reader must not miss.
+    """The HTML of a page. Bold text in a table cell is highlighted.
 
     pictures: PNG by the name under which the Markdown shows it; embedded.
     """

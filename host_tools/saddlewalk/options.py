@@ -1,4 +1,4 @@
-"""Command-line options that commands share, and types whose errors say what would be right."""
+"""Command-line options that commands share, and types whose errors state what is accepted."""
 
 import argparse
 import math
@@ -42,7 +42,7 @@ speed = number_in(1e-3, 10, "m/s")
 
 
 def add_gait_options(parser: argparse.ArgumentParser, default_pace: str | None = None) -> None:
-    """--speed or --schedule, one required unless there is a default to tell of, and --hs-angle."""
+    """--speed or --schedule, one of them required unless there is a default, and --hs-angle."""
     default = "" if default_pace is None else f" (default {default_pace})"
     pace = parser.add_mutually_exclusive_group(required=default_pace is None)
     pace.add_argument("--speed", type=speed, metavar="M/S", help="walking speed" + default)
@@ -68,7 +68,7 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
         type=whole_number_in(0, 2**32 - 1),
         default=1,
         metavar="N",
-        help="of everything random (default 1)",
+        help="random seed (default 1)",
     )
     parser.add_argument(
         "--jobs",

@@ -14,7 +14,7 @@ def build_dir() -> Path:
 
 
 def need_checkout() -> None:
-    """Raise UserError if this package is a copy, as `pip install .` leaves it, far from all else.
+    """Raise UserError if this package is a copy without its checkout, as from `pip install .`.
 
     Its firmware, DBC and LCM types are those of the checkout.
     """
@@ -26,7 +26,7 @@ def need_checkout() -> None:
 
 
 def install_command(extra: str) -> str:
-    """What adds the optional dependencies `extra` and leaves the package with its checkout."""
+    """The command that installs the optional dependencies `extra`, editable."""
     return f"run `.venv/bin/pip install -e '.[{extra}]'` in the checkout"
 
 

@@ -1,4 +1,4 @@
-"""Recorded states of a walker in, the supervisor's scores out: a row of a table each."""
+"""From recorded states of a walker to the supervisor's scores, row by row."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
@@ -20,7 +20,7 @@ SCORE_COLUMNS = (
 
 
 def recording_core(config: Any) -> Core:
-    """A core that goes on whatever a recording lacks. config: saddle_config_t, not changed."""
+    """A core that never stops for lost inputs. config: saddle_config_t, not changed."""
     patient = ffi().new("saddle_config_t *", config[0])
     patient.lost_inputs_stop = 0.0
     return Core(patient)

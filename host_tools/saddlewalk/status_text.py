@@ -6,7 +6,7 @@ from typing import Any
 LINKS = ("unused", "up", "DOWN", "BUS-OFF")
 SOURCES = ("none", "CAN", "LCM")
 TRANSPORTS = ("SocketCAN", "UDP")
-REFUSED = {
+REJECTED = {
     "malformed": "frames_malformed",
     "bad CRC": "frames_bad_crc",
     "bad counter": "frames_bad_counter",
@@ -26,12 +26,12 @@ USUAL = 0.99  # the share of ticks whose latency is shown beside the worst
 
 
 def lines(status: Any) -> list[str]:
-    """Timing, inputs and transports; nothing while no status_t has come."""
+    """Timing, inputs and transports; empty before the first status_t."""
     return [timing(status), inputs(status), transports(status)] if status else []
 
 
 def timing(status: Any) -> str:
-    """How the ticks keep their time."""
+    """Timing of the ticks."""
     below_us = latency_below_us(status.latencies, USUAL)
     usual = "" if below_us is None else f"{USUAL:.0%} below {below_us / 1000:g} ms, "
     parts = [
@@ -47,7 +47,7 @@ def timing(status: Any) -> str:
 
 
 def latency_below_us(latencies: Sequence[int], share: float) -> int | None:
-    """The end of the bin below which that share of the ticks lies; None if it is the last's."""
+    """Upper end of the bin below which that share of the ticks lies; None for the last bin."""
     counted = 0
     for exponent, ticks in enumerate(latencies[:-1], start=1):
         counted += ticks
@@ -57,7 +57,7 @@ def latency_below_us(latencies: Sequence[int], share: float) -> int | None:
 
 
 def inputs(status: Any) -> str:
-    """Who commands, how old each input is, and what was rejected."""
+    """The source that commands, the age of each input, and what was rejected."""
     ages = (
         ("CoM", status.com_age_us),
         ("left foot", status.left_age_us),
@@ -68,14 +68,14 @@ def inputs(status: Any) -> str:
             f"inputs: {commands(status)}",
             *(f"{name} {_age(status, age_us)}" for name, age_us in ages),
             f"{status.frames_accepted} frames accepted",
-            *_counts(status, REFUSED),
+            *_counts(status, REJECTED),
             *_other_version(status),
         ]
     )
 
 
 def commands(status: Any) -> str:
-    """Who commands and since when not; after a walk has ended without commands, nobody does."""
+    """The source that commands, and the age of its last command."""
     if status.command_age_us == status.NEVER:
         return "no commands yet"
     age = _age(status, status.command_age_us)
@@ -85,7 +85,7 @@ def commands(status: Any) -> str:
 
 
 def transports(status: Any) -> str:
-    """Whether CAN and LCM carry, and what was dropped."""
+    """State of CAN and LCM, and what was dropped."""
     can = f"CAN by {_name(TRANSPORTS, status.can_transport)}"
     parts = [
         _link(can, status.can_link, status.can_losses),
@@ -105,7 +105,9 @@ def _link(name: str, state: int, losses: int) -> str:
 def _other_version(status: Any) -> list[str]:
     if not status.frames_bad_version:
         return []
-    return [f"wire version {status.other_version} refused, this firmware has {status.wire_version}"]
+    return [
+        f"wire version {status.other_version} rejected, this firmware has {status.wire_version}"
+    ]
 
 
 def _age(status: Any, age_us: int) -> str:

@@ -1,4 +1,4 @@
-"""Standard error, as the libraries below Python write to it."""
+"""Redirecting standard error of libraries in C."""
 
 import contextlib
 import os
@@ -8,7 +8,7 @@ from pathlib import Path
 
 @contextlib.contextmanager
 def stderr_silenced() -> Iterator[None]:
-    """For a library that explains at length what one line of ours says, or what does not matter."""
+    """Discard the output of a library whose messages are replaced by one line, or irrelevant."""
     saved = os.dup(2)
     with Path(os.devnull).open("wb") as nowhere:
         os.dup2(nowhere.fileno(), 2)

@@ -1,4 +1,4 @@
-"""The firmware's ticks as they come over CAN: each one whole, or not at all."""
+"""The firmware's ticks from CAN, each complete or not at all."""
 
 import time
 from collections.abc import Callable
@@ -46,7 +46,7 @@ class TickReader:
         self._latest: Messages = {}
 
     def feed(self, frame: can.Message) -> Messages | None:
-        """All messages of a tick once they have come; None before, and if one was lost."""
+        """All messages of a tick when they are complete; None before, and if one was lost."""
         accepted = self.receiver.accept(frame)
         if accepted is None:
             return None
@@ -63,9 +63,9 @@ class TickReader:
 def next_tick(
     bus: FrameBus, feed: Callable[[can.Message], Messages | None], within_s: float
 ) -> Messages | None:
-    """The next tick that `feed` makes of the bus's frames; None if none is whole in time.
+    """The next tick that `feed` makes of the bus's frames; None if none is complete in time.
 
-    Takes at least one frame that is there, and ends in time whatever the bus is flooded with.
+    Reads at least one waiting frame, and returns in time even if the bus is flooded.
     """
     deadline_s = time.monotonic() + within_s
     while True:

@@ -9,17 +9,17 @@ from saddlewalk.table import Cell
 
 REASON_WORDS = {
     "none": "",
-    "input": "a measurement is missing or cannot be believed",
-    "no_walk": "nothing is planned, and nobody was seen to stand or to complete a step",
-    "no_step": "the step to come does not catch the body",
+    "input": "a measurement is missing or implausible",
+    "no_walk": "no plan, and neither standing nor a complete step was measured",
+    "no_step": "the next step cannot catch the body",
     "speed": "this body cannot walk at this speed",
     "s_pend": "the steps are almost too short for this speed",
     "s_jump": "the steps are almost too long for this speed",
     "s_sw": "the body is too far to one side for the width of the step",
-    "xcom_ap": "forward motion departs from the expected",
-    "xcom_ml": "sideways motion departs from the expected",
-    "off_track": "more energy than the ankles can bring back to the plan's",
-    "settling": "no level has held for long enough yet",
+    "xcom_ap": "forward motion deviates from the expected",
+    "xcom_ml": "sideways motion deviates from the expected",
+    "off_track": "more energy than the ankles can absorb to return to the plan",
+    "settling": "no level has lasted long enough yet",
     "forward": "the body departs forward of the feet",
     "backward": "the body departs backward of the feet",
     "left": "the body departs to the left of the feet",
@@ -42,7 +42,7 @@ def reason_name(reason: int) -> str:
 
 
 def reason_words(reason: int) -> str:
-    """What decided the level, for people; empty if nothing is amiss."""
+    """What decided the level, as text; empty for no reason."""
     name = reason_name(reason)
     return REASON_WORDS.get(name, name)
 
@@ -68,11 +68,11 @@ def _driver(signals: Mapping[str, float]) -> str | None:
 
 
 def known_bit(bit: float, number: float) -> int | None:
-    """A bit that says something while its number does."""
+    """A bit that is known if its number is."""
     return None if math.isnan(number) else int(bit)
 
 
 def ticks_in(levels: Iterable[str]) -> dict[str, int]:
-    """How many of the names are each level's, from stable to unstable and unknown last."""
+    """Number of ticks in each level, from stable to unstable, unknown last."""
     counts = Counter(levels)
     return {name: counts[name] for name in (*LEVELS[1:], LEVELS[0])}

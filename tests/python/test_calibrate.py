@@ -234,8 +234,8 @@ def test_without_toes_the_steps_are_not_told_and_the_rest_is(tmp_path, capsys):
     found = calibrated(tmp_path, trc_file(tmp_path / "walk.trc", markers))
     assert set(found) == {"body_height_m", "vertical_slope_s", "vertical_intercept_m"}
     printed = capsys.readouterr().out
-    assert "walk.trc does not tell the step length: not both toes were seen" in printed
-    assert "walk.trc does not tell the half the foot: not both toes were seen" in printed
+    assert "walk.trc does not give the step length: not both toes were seen" in printed
+    assert "walk.trc does not give the half the foot: not both toes were seen" in printed
 
 
 def moved(walk: Recording, **offset_m: np.ndarray) -> Recording:

@@ -56,7 +56,7 @@ def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys
     shown = capsys.readouterr().out
     assert "did not fall" in shown and "BAD" not in shown and "push of 8 N s to 90 degrees" in shown
     assert "stands at the end" in shown
-    assert f"{round(22 / TICK_S)} ticks computed again from the log: the same bits\n" in shown
+    assert f"{round(22 / TICK_S)} ticks recomputed from the log: the same bits\n" in shown
     assert_levels_printed(shown, [row["level"] for row in rows(tmp_path)])
     assert {path.name for path in tmp_path.iterdir()} == FILES
 

@@ -170,7 +170,7 @@ def test_a_log_of_others_is_refused_and_others_in_ours_are_told(walk, tmp_path, 
         file.write((walk / "walk.lcmlog").read_bytes())
     assert main(["export", str(path), "--format", "csv"]) == 0
     printed = capsys.readouterr()
-    assert "left out: 1 messages on CAMERA" in printed.err and "camera" not in printed.out
+    assert "skipped: 1 messages on CAMERA" in printed.err and "camera" not in printed.out
 
 
 def test_of_a_log_that_was_cut_the_rest_is_exported_and_told(walk, tmp_path, capsys):

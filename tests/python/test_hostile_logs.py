@@ -86,7 +86,7 @@ def test_a_length_beyond_the_file_costs_one_event(
     broken = LcmLog(log)
     assert list(broken) == events[:99] + events[101:] or list(broken) == events[:100] + events[101:]
     status, out, err = run(command, log, capsys)
-    assert status == 1 and "bytes of the log are no event" in out + err
+    assert status == 1 and "bytes of the log are not an event" in out + err
 
 
 def test_a_log_is_what_was_written(walk, short):
@@ -166,7 +166,7 @@ def test_monitor_plays_no_damaged_log(short, tmp_path, capsys):
     (tmp_path / "log").write_bytes(data)
     assert main(["monitor", "--once", "--lcm", f"file://{tmp_path / 'log'}"]) == 2
     printed = capsys.readouterr().err
-    assert printed.count("\n") == 1 and "bytes of the log are no event" in printed
+    assert printed.count("\n") == 1 and "bytes of the log are not an event" in printed
 
 
 # Text from outside

@@ -119,14 +119,18 @@ SHOWN += ["+0.053 (unstable at 0, caution at 0.100)"]
 SHOWN += ["driven by: the body departs to the left of the feet"]
 SHOWN += ["+0.083 m", "-0.214 m", "data age 4 ms", "late ticks 3", "frames rejected 7"]
 SHOWN += ["plan: walking", "tick 512", "+0.097 m", "-0.031 m"]
-SHOWN += ["sideways motion departs from the expected"]
+SHOWN += ["sideways motion deviates from the expected"]
 SHOWN += ["to stop +31.2 J (ankles cannot)", "to the plan -4.5 J (ankles can)"]
 SHOWN += ["right foot 0.70 m ahead, 0.15 m right of the left, 0.21 m spare"]
 
 
 SHOWN += ["every 80.0 ms", "latency 0.13 ms (99% below 0.256 ms, worst 1.90 ms)"]
 SHOWN += ["commands from LCM 40 ms ago", "CoM 8 ms ago", "right foot never"]
-SHOWN += ["wire version 3 refused, this firmware has 5", "CAN by UDP up", "LCM DOWN (lost 2 times)"]
+SHOWN += [
+    "wire version 3 rejected, this firmware has 5",
+    "CAN by UDP up",
+    "LCM DOWN (lost 2 times)",
+]
 SHOWN += ["dropped 7 frames without room"]
 
 
@@ -182,14 +186,14 @@ def test_the_level_comes_first_and_large_and_in_words():
     rows = [line.strip("│ ") for line in text.splitlines()[1:7]]
     assert rows[:4] == [
         *(row.strip() for row in banner("CAUTION").splitlines()),
-        "level: caution, sideways motion departs from the expected",
+        "level: caution, sideways motion deviates from the expected",
     ]
     assert (
         rows[4].split() == "margin ░░░░│█▒▒░░░░░░░░░░░░░░░░░ +0.053".split() + rows[4].split()[3:]
     )
     assert rows[5].startswith("driven by: ")
     line = dashboard.summary(heard())
-    assert line.startswith("CAUTION: sideways motion departs from the expected | margin +0.053 (")
+    assert line.startswith("CAUTION: sideways motion deviates from the expected | margin +0.053 (")
 
 
 @pytest.mark.parametrize(
@@ -293,7 +297,7 @@ def test_energies_that_are_not_known_are_not_judged():
     [
         (("COMMAND_STALE",), "commands missing"),
         (("COM_RANGE", "LEFT_STALE"), "the CoM's measurement and the left foot's missing"),
-        ((), "inputs not yet good for long enough"),
+        ((), "inputs not yet valid for long enough"),
     ],
 )
 def test_a_safe_stop_is_said_with_what_is_missing(faults, words):

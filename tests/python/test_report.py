@@ -217,7 +217,7 @@ def test_alarms_have_start_duration_level_and_reason(walk, tmp_path, unseen):
         ["3.20", "0.80", "caution", "0.050", reason_words(14), both],
         ["4.00", "0.24", "unstable", "-0.030", reason_words(16), reason_words(3)],
     ]
-    assert page.short["times that the level was"] == "unstable 1, caution 1, unknown 0"
+    assert page.short["episodes by level"] == "unstable 1, caution 1, unknown 0"
     assert ["unstable", "0.24", f"{3 / TICKS:.1%}"] in page.tables["level", "time (s)", "share"]
 
 
@@ -259,7 +259,7 @@ def test_the_worst_alarms_of_a_long_run_are_shown_closely(walk, tmp_path, monkey
     monkeypatch.setattr(pictures, "LONG_S", 5.0)
     log = write_events(tmp_path / "log", changed(events_of(walk), "VERDICT", alarm))
     page = report(log, tmp_path / "a.html")
-    views = re.findall(r"The same closely: (\w+) from (\S+) s\.", page.text)
+    views = re.findall(r"Detail: (\w+) from (\S+) s\.", page.text)
     assert views == [("unstable", "3.20"), ("caution", "4.80"), ("caution", "6.40")]
 
 
@@ -279,7 +279,7 @@ def test_faults_late_ticks_and_refused_frames_are_told(walk, tmp_path):
     assert words == "the left foot's measurement is too old"
     assert f"{TICKS - 1} ticks late, 4 left out" in page.short["timing, since the firmware's start"]
     text = page.short["CAN, since the firmware's start"]
-    assert text.startswith("1234 frames accepted, refused: 7 bad CRC")
+    assert text.startswith("1234 frames accepted, rejected: 7 bad CRC")
     assert page.tags["img"] == 4 and "When each fault and limit was reported." in page.text
 
 
@@ -319,7 +319,7 @@ def test_without_verdicts_it_says_so(walk, tmp_path, unseen):
     page = report(log, tmp_path / "a.html")
     assert "No verdict was logged." in page.text and ALARMS not in page.tables
     assert "came on SADDLEWALK_VERDICT: levels, alarms, energies" in page.text
-    assert page.short["times that the level was"] == "not known"
+    assert page.short["episodes by level"] == "not known"
 
 
 def test_without_inputs_steps_are_the_plans(walk, tmp_path):

@@ -94,9 +94,9 @@ def backwards(walk: Recording) -> Recording:
 NOT_STEADY = {
     "jump": (lambda: lifted(walk_of(PERSON, 1.0), 0.25), "both feet are in the air for 0.4"),
     "box": (lambda: from_a_box(walk_of(PERSON, 1.0)), r"up to 0.3. m above where they stand"),
-    "corner": (lambda: bent(walk_of(PERSON, 1.0), 90), "the way turns by 9. degrees"),
-    "about turn": (lambda: bent(walk_of(PERSON, 1.0), -170), "the way turns by 1.. degrees"),
-    "half a corner": (lambda: bent(walk_of(PERSON, 1.0), 45), "the way turns by 4. degrees"),
+    "corner": (lambda: bent(walk_of(PERSON, 1.0), 90), "the path turns by 9. degrees"),
+    "about turn": (lambda: bent(walk_of(PERSON, 1.0), -170), "the path turns by 1.. degrees"),
+    "half a corner": (lambda: bent(walk_of(PERSON, 1.0), 45), "the path turns by 4. degrees"),
     "lengths": (
         lambda: stumbled((0.45, 0.0)),
         "step lengths scatter by .*at most 50 %",
@@ -122,7 +122,7 @@ def test_a_turn_in_a_laboratory_s_file_is_one_line(command, tmp_path, capsys):
     shown = capsys.readouterr()
     assert shown.out == "" and shown.err.count("\n") == 1
     assert (
-        "turn.c3d" in shown.err and "not one steady straight walk: the way turns by 9" in shown.err
+        "turn.c3d" in shown.err and "not one steady straight walk: the path turns by 9" in shown.err
     )
 
 

@@ -24,7 +24,7 @@ _DUMP = re.compile(r"^desc: Trigger: --dump-after=.*?^summary: (\d+)$", re.S | r
 
 @dataclass(frozen=True)
 class Update:
-    """One update of one walk, and what it said."""
+    """One update of one walk, and its result."""
 
     walk: int
     mode: int
@@ -82,7 +82,7 @@ def _groups(updates: list[Update]) -> Iterator[Group]:
 def _callgrind(function: str, calls: str) -> tuple[list[list[int]], list[int]]:
     """What saddlewalk-bench-updates prints, and the instructions of each call of a function.
 
-    callgrind tells the calls of one function at a time apart.
+    callgrind separates the calls of one function at a time.
     """
     valgrind = shutil.which("valgrind")
     if valgrind is None:

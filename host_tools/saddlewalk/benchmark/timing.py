@@ -1,4 +1,4 @@
-"""Planning times: the core beside its neighbours, in one process, one after the other in turns.
+"""Planning times of the core and other planners, in one process, interleaved.
 
 The walk is the paper's: the mean person at 1.2 m/s and 10 degrees, an instant every 80 ms.
 """
@@ -91,7 +91,7 @@ class CorePlan:
 
 
 def told_calls() -> str:
-    """What saddlewalk-bench-calls tells: lines of walk, update, function, argument."""
+    """The output of saddlewalk-bench-calls: lines of walk, update, function, argument."""
     program = built("bin/saddlewalk-bench-calls")
     done = subprocess.run([program], capture_output=True, text=True)
     if done.returncode != 0:
@@ -213,7 +213,7 @@ class Timing:
 
 
 def measure(rounds: int) -> dict[str, Timing]:
-    """Everything that is here, in turns, `rounds` times; a first time before is not counted."""
+    """Every installed planner, interleaved, `rounds` times after one warm-up."""
     timings = {name: Timing(name) for name in neighbours()}
     runs = dict(_make(timings))
     for _ in range(rounds):

@@ -1,4 +1,4 @@
-"""`saddlewalk bench`: planning time of the core beside its neighbours, and its instructions."""
+"""`saddlewalk bench`: planning time of the core and other planners, and its instructions."""
 
 import argparse
 from typing import Any
@@ -10,20 +10,20 @@ from saddlewalk.outputs import add_output
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "bench",
-        help="planning time of the core beside others, and its instructions",
+        help="planning time of the core and other planners, and its instructions",
         description="Measure what the paper measured: the time to plan 1 and 10 strides with "
-        "scores, gravity and margins. Beside the core: the same equations in numpy and GNU Octave, "
-        "walking QPs, placo, and a floor. What is not installed is named and left out. Shares this "
-        "machine's processor with whatever else runs; the instructions, by valgrind, repeat.",
+        "scores, gravity and margins. For comparison: the same equations in numpy and GNU Octave, "
+        "walking QPs, placo, and a floor. What is not installed is named and left out. Times depend "
+        "on the machine's load; the instruction counts, by valgrind, do not.",
     )
     parser.add_argument(
         "--rounds",
         type=whole_number_in(1, 10**5),
         default=50,
         metavar="N",
-        help="how often each plan is made, in turns (default 50)",
+        help="rounds, in which each planner runs once (default 50)",
     )
-    add_output(parser, "--json", metavar="FILE", help="the same as JSON; - for standard output")
+    add_output(parser, "--json", metavar="FILE", help="the results as JSON; - for standard output")
     parser.set_defaults(run=run)
 
 

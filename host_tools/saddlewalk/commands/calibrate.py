@@ -41,7 +41,9 @@ def add_parser(subparsers: Any) -> None:
         metavar="FILE",
         help="the gait model as TOML, for --config (default: standard output)",
     )
-    add_output(parser, "--header", metavar="FILE", help="the same as a C header, for firmware")
+    add_output(
+        parser, "--header", metavar="FILE", help="the gait model as a C header, for firmware"
+    )
     parser.set_defaults(run=run)
 
 
@@ -111,7 +113,7 @@ def _fit_table(fits: "list[Fit]") -> Any:
 
 def _missing_quantities(walks: "list[WalkMeasures]") -> list[str]:
     return [
-        f"{walk.source} does not tell the {quantity}: {reason}"
+        f"{walk.source} does not give the {quantity}: {reason}"
         for walk in walks
         for quantity, reason in walk.missing.items()
     ]

@@ -44,7 +44,9 @@ NEW_KEY = ""  # of --command-key without a file
 
 
 def add_parser(subparsers: Any) -> None:
-    parser = subparsers.add_parser("demo", help="firmware and wearer walk; picture and logs")
+    parser = subparsers.add_parser(
+        "demo", help="one walk of firmware and emulated wearer, with picture and logs"
+    )
     add_output(
         parser,
         "--out",
@@ -52,13 +54,13 @@ def add_parser(subparsers: Any) -> None:
         type=Path,
         default=Path("out/demo"),
         metavar="FOLDER",
-        help="for the picture and the logs (default out/demo)",
+        help="folder for the picture and the logs (default out/demo)",
     )
     parser.add_argument(
         "--firmware",
         choices=(HOST, EMULATED),
         default=HOST,
-        help="the process saddlewalk-host, or a Cortex-M4F in QEMU, which has no LCM and walks in "
+        help="the process saddlewalk-host, or a Cortex-M4F in QEMU, without LCM and in "
         "lockstep (default host)",
     )
     add_walk_options(
@@ -122,7 +124,7 @@ def _walk(args: argparse.Namespace, config: Any, lcm: Any) -> int:
 
 
 def _clock(args: argparse.Namespace) -> str:
-    """What was asked for, or what the firmware walks by; a controller only knows lockstep here."""
+    """The chosen clock, or the firmware's default; a controller has lockstep only."""
     if args.firmware == HOST:
         return args.clock or "realtime"
     given = (
@@ -155,7 +157,7 @@ def _key_file(given: str | None) -> Iterator[Path | None]:
 def _host(
     args: argparse.Namespace, config: Any, lcm: Any, run_folder: "RunFolder"
 ) -> "Iterator[tuple[Any, Recorder]]":
-    """The bus of a new host process, and what is recorded of it from its first word on."""
+    """The bus of a new host process, and the recorder of its messages from the first on."""
     from saddlewalk.emulation.host import running_host
     from saddlewalk.transport.bus import open_bus
 
@@ -178,7 +180,7 @@ def _controller(
     with running_controller(config) as controller:
         _refuse_company(controller.bus, lcm)
         with _recorder(run_folder, lcm) as recorder:
-            print("LCM: only of the wearer, a controller has none")
+            print("LCM: only from the wearer; a controller has no LCM")
             yield controller.bus, recorder
     print(f"controller: {controller.words}")
 
@@ -196,7 +198,7 @@ def _recorder(run_folder: "RunFolder", lcm: Any) -> "Recorder":
 
 
 def _open_lcm(url: str | None) -> Any:
-    """LCM; without a route for the default URL, in a private network, where run() starts anew."""
+    """LCM; without a multicast route, in a private network, in which run() restarts."""
     from saddlewalk.transport import private_network
     from saddlewalk.transport.lcmbus import open_lcm
 
@@ -210,7 +212,7 @@ def _open_lcm(url: str | None) -> Any:
 
 
 def _refuse_company(bus: Any, lcm: Any) -> None:
-    """Another walk on the same buses would be mixed into this one. Before anything is written."""
+    """Reject buses on which another walk is running. Before anything is written."""
     from saddlewalk.transport.lcmbus import receive
 
     heard: list[str] = []
@@ -227,7 +229,7 @@ def _refuse_company(bus: Any, lcm: Any) -> None:
 
 @contextlib.contextmanager
 def _display(args: argparse.Namespace, lcm: Any) -> Iterator[Any]:
-    """An observer that shows what the firmware publishes: a live panel, or a line now and then."""
+    """An observer that shows the firmware's messages: a live panel, or a line every few seconds."""
     from rich.live import Live
 
     from saddlewalk.commands.monitor import Listener
@@ -265,7 +267,7 @@ def _finish(
     recorder: "Recorder",
     checks: "list[Check]",
 ) -> int:
-    """Tell; 0 only if the walk was sound."""
+    """Print the result; 0 only if the walk was sound."""
     print(summary(wearer, exoskeleton))
     print(level_times(recorder) + (", until the fall" if wearer.fallen else ""))
     if exoskeleton.punctuality:

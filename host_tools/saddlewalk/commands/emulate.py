@@ -18,26 +18,27 @@ if TYPE_CHECKING:
 SPEED_M_S = 1.2
 IMPULSE_MAX_N_S = 1000.0
 DURATION_MAX_S = 86400.0
-RIGHT_AHEAD_M = 0.02  # far more than the sensors' noise, which else decides which foot steps first
+RIGHT_AHEAD_M = (
+    0.02  # far above the sensor noise, which would otherwise decide which foot steps first
+)
 
 
 def add_parser(subparsers: Any) -> None:
-    parser = subparsers.add_parser("emulate", help="be the wearer of a running firmware")
+    parser = subparsers.add_parser("emulate", help="emulate a wearer for running firmware")
     add_walk_options(parser, pace=f"{SPEED_M_S:g} m/s", duration_s=20.0)
     parser.add_argument(
         "--noise-scale",
         type=number_in(0, 100),
         default=1.0,
         metavar="X",
-        help="of the sensors and of the wearer's unsteadiness (default 1)",
+        help="factor of the sensor noise and of the wearer's unsteadiness (default 1)",
     )
     add_input(
         parser,
         "--faults",
         type=Path,
         metavar="FILE",
-        help="TOML with what happens to the frames and commands, all at once: examples/faults.toml "
-        "explains it",
+        help="TOML with faults, all injected at once; examples/faults.toml explains the format",
     )
     add_input(
         parser,
@@ -52,7 +53,7 @@ def add_parser(subparsers: Any) -> None:
 def add_walk_options(
     parser: argparse.ArgumentParser, pace: str, duration_s: float, push: str = ""
 ) -> None:
-    """What emulate and demo have in common; `pace` and `push` tell the defaults."""
+    """Options of emulate and demo; `pace` and `push` describe the defaults."""
     parser.add_argument(
         "--can", default="auto", metavar="SPEC", help="auto, socketcan:INTERFACE, udp[:GROUP:PORT]"
     )
@@ -61,7 +62,7 @@ def add_walk_options(
         "--clock",
         choices=("realtime", "lockstep"),
         default="realtime",
-        help="the wall clock, or as fast as the firmware answers (default realtime)",
+        help="real time, or as fast as the firmware answers (default realtime)",
     )
     add_gait_options(parser, default_pace=pace)
     add_body_options(parser)
@@ -77,7 +78,7 @@ def add_walk_options(
         type=push_text,
         action="append",
         metavar="N.S@S:DEG",
-        help="impulse at a time in a direction, 0 forward, 90 to the left; repeatable"
+        help="push: impulse, time and direction (0 forward, 90 to the left); repeatable"
         + (f" (default {push})" if push else ""),
     )
     parser.add_argument(
@@ -85,7 +86,7 @@ def add_walk_options(
         type=whole_number_in(0, 2**32 - 1),
         default=0,
         metavar="N",
-        help="of everything random (default 0)",
+        help="random seed (default 0)",
     )
 
 
@@ -134,7 +135,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _occurrences(args: argparse.Namespace) -> "list[Occurrence]":
-    """What --faults says shall happen, each at a time that --seed draws."""
+    """The faults of --faults, each at a random time by --seed."""
     import numpy as np
 
     from saddlewalk.faults.scenario import draw, read_scenario
@@ -170,7 +171,7 @@ def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer"
 
 
 def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":
-    """What --schedule or --speed asks for."""
+    """The speeds of --schedule or --speed."""
     from saddlewalk.planning.schedule import read_schedule
 
     if args.schedule:
@@ -179,7 +180,7 @@ def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":
 
 
 def events_printer(wearer: "Wearer") -> Any:
-    """An observer that tells what the plan is doing, each push and a fall."""
+    """An observer that prints changes of mode, pushes and a fall."""
     from saddlewalk.contract import MODES
     from saddlewalk.emulation.exoskeleton import Observer
 
@@ -192,14 +193,14 @@ def events_printer(wearer: "Wearer") -> Any:
         def tick(self, tick: Any, wearer: "Wearer") -> None:
             if tick.plan and tick.plan.mode != self._mode:
                 self._mode = tick.plan.mode
-                self._tell(tick, MODES[tick.plan.mode])
+                self._print(tick, MODES[tick.plan.mode])
             while self._due and self._due[0].time_s < tick.time_s:
-                self._tell(tick, push_words(self._due.pop(0)))
+                self._print(tick, push_words(self._due.pop(0)))
             if wearer.fallen and not self._fallen:
                 self._fallen = True
-                self._tell(tick, "fell")
+                self._print(tick, "fell")
 
-        def _tell(self, tick: Any, words: str) -> None:
+        def _print(self, tick: Any, words: str) -> None:
             print(f"{tick.time_s:7.2f} s  {words}", flush=True)
 
     return Events()

@@ -135,7 +135,7 @@ def _cross_validation(found: "CrossValidation | None") -> dict[str, Any]:
 def _emulate(
     console: "Console", args: argparse.Namespace, config: Any, trials: Sequence["GaitTrial"]
 ) -> Part:
-    """Walk, and tell about the emulated wearer, by kind."""
+    """Run the walks and print the results of the emulated wearer, by kind."""
     from saddlewalk.evaluation.detection import detection_of, push_limits, recovery_benefit
     from saddlewalk.evaluation.region import CLAIMS, POSTURES, explore, grid
     from saddlewalk.evaluation.side_by_side import walker_figures
@@ -224,7 +224,7 @@ def _walk(args: argparse.Namespace, count: int, config: Any) -> list["Walk"]:
 
 @contextlib.contextmanager
 def _progress(name: str, total: int) -> Iterator[Callable[[int], None]]:
-    """A bar on standard error while it lasts, and what tells it how much is done."""
+    """A progress bar on standard error; yields its update function."""
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TimeRemainingColumn
 
@@ -252,7 +252,7 @@ def _percent(share: float) -> str:
 
 
 def _print_detection(console: "Console", detections: dict[str, "Detection"]) -> None:
-    table = _table("Falls foretold", "the wearer takes", *(f"{kind} steps" for kind in detections))
+    table = _table("Predicted falls", "the wearer takes", *(f"{kind} steps" for kind in detections))
     rows = {
         "pushed walks": lambda d: f"{d.pushed}",
         "falls": lambda d: f"{d.fallen}",
@@ -312,7 +312,9 @@ def _print_confusions(console: "Console", confusions: dict[str, dict[str, dict[s
     names = ("true_safe", "false_safe", "false_unsafe", "true_unsafe")
     columns = [name.replace("_", " ") for name in names]
     for posture, claims in confusions.items():
-        table = _table(f"States that can be brought to rest: {posture}", "said safe if", *columns)
+        table = _table(
+            f"States that can be brought to rest: {posture}", "criterion for safe", *columns
+        )
         for claim, counts in claims.items():
             table.add_row(CLAIMS[claim], *(str(counts[name]) for name in names))
         console.print(table)
@@ -411,7 +413,7 @@ def _json(value: Any) -> str:
 
 
 def _without_nan(value: Any) -> Any:
-    """What is not known is null: JSON has no NaN."""
+    """Unknown numbers are null: JSON has no NaN."""
     if isinstance(value, dict):
         return {key: _without_nan(part) for key, part in value.items()}
     if isinstance(value, list):

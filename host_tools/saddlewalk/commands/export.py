@@ -14,7 +14,7 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "export",
         help="an LCM log as CSV, Parquet or MCAP",
-        description="Write an LCM log for other tools: a table for each channel, a row a message, "
+        description="Write an LCM log for other tools: a table per channel, a row per message, "
         "units in the column names. MCAP (JSON with schemas) opens in Foxglove and PlotJuggler. "
         "Parquet and MCAP need the optional packages of saddlewalk[export].",
     )
@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     for path in export(log, tables, args.format, args.out):
         print(printable(path), file=stream)
     remarks = [
-        f"left out: {count} messages on {channel}, of no type of ours"
+        f"skipped: {count} messages on {channel}, of unknown type"
         for channel, count in others.items()
     ]
     remarks += [f"incomplete: {log.broken}"] if log.broken else []

@@ -1,4 +1,4 @@
-"""`saddlewalk faults`: walks on which frames, clocks and processes fail, and what comes of it."""
+"""`saddlewalk faults`: fault injection into frames, clocks and processes, and the results."""
 
 import argparse
 import contextlib
@@ -23,7 +23,7 @@ FILE_WIDTH = 132
 
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
-        "faults", help="walks on a bus that fails: what is detected, and is any output unsafe?"
+        "faults", help="inject faults into many walks: what is detected, is any output unsafe?"
     )
     add_input(
         parser,
@@ -90,7 +90,7 @@ def _live(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["
 
 @contextlib.contextmanager
 def _progress(what: str, total: int) -> Iterator[Callable[[int], None]]:
-    """A bar on standard error; gives what tells it how many are done."""
+    """A progress bar on standard error; yields its update function."""
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress, TimeRemainingColumn
 
@@ -129,7 +129,7 @@ def _table(rows: list["Row"], title: str) -> Any:
 
 
 def _name(row: "Row") -> str:
-    """The class, and where the scenario says so its messages."""
+    """The class, and its messages if the scenario names them."""
     from saddlewalk.faults.scenario import KINDS
 
     fault = row.fault

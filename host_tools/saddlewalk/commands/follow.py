@@ -1,4 +1,4 @@
-"""`saddlewalk follow`: how well the plan follows recorded walks, by default and calibrated."""
+"""`saddlewalk follow`: tracking error of recorded walks, by default and calibrated."""
 
 import argparse
 import math
@@ -23,11 +23,11 @@ SHOWN = ("y\nmm", "z\nmm", "shape\nmm", "swing\nmm", "landing\nmm", "strike\nms"
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "follow",
-        help="how well the plan follows recorded walks, by default and calibrated",
+        help="tracking error of recorded walks, by default and calibrated",
         description="For each recorded walk, RMS of recorded minus planned with the paper's "
         "defaults and after calibration: to that walk itself or, with --config, before. CoM y, "
-        "CoM z, its shape (less the mean difference), the swing foot's x from the stance foot "
-        "all the way and where it lands, and the time from passing the stance foot to heel strike.",
+        "CoM z, its shape (without the mean difference), the swing foot's x from the stance foot "
+        "over the swing and at landing, and the time from passing the stance foot to heel strike.",
     )
     add_recordings(parser)
     add_body_options(parser)

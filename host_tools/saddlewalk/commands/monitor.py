@@ -29,7 +29,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--once",
         action="store_true",
-        help=f"print one line and end; status 1 if not all has come within {ONCE_S:g} s",
+        help=f"print one line and exit; status 1 if a channel is missing after {ONCE_S:g} s",
     )
     parser.set_defaults(run=run)
 

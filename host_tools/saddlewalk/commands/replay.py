@@ -15,9 +15,7 @@ SAMPLE_NAMES = ("healthy", "stroke")
 
 
 def add_parser(subparsers: Any) -> None:
-    parser = subparsers.add_parser(
-        "replay", help="send a recorded walk through CAN to the firmware"
-    )
+    parser = subparsers.add_parser("replay", help="send a recorded walk over CAN to the firmware")
     trial = parser.add_mutually_exclusive_group(required=True)
     add_input(
         trial,
@@ -37,7 +35,7 @@ def add_parser(subparsers: Any) -> None:
         "--clock",
         choices=("lockstep", "realtime"),
         default="lockstep",
-        help="as fast as the firmware answers, or as it was walked, with LCM (default lockstep)",
+        help="as fast as the firmware answers, or in real time, with LCM (default lockstep)",
     )
     add_body_options(parser)
     add_output(parser, "--out", metavar="FILE", help="states and scores of every tick as CSV")

@@ -15,9 +15,9 @@ def add_parser(subparsers: Any) -> None:
         "report",
         help="an LCM log of a session as one HTML page",
         description="Write a log of `saddlewalk demo` or of lcm-logger as one HTML page with "
-        "everything in it: scores, levels and alarms with their reasons, steps and their "
+        "everything embedded: scores, levels and alarms with their reasons, steps and their "
         "variability, distance, data quality, configuration. Exit status 1 if the log is "
-        "incomplete; the page then says so.",
+        "incomplete, which the page then states.",
     )
     add_input(parser, "log", type=Path, metavar="LOG", help="an LCM log")
     add_output(

@@ -19,7 +19,7 @@ def add_parser(subparsers: Any) -> None:
         "reproduce",
         help="the paper's figures and numbers, from the C core",
         description="Draw the paper's figures from the C core and compare every number that the "
-        f"paper states. Writes {PAGE}, which has everything in it, and each figure as PNG. Exit "
+        f"paper states. Writes {PAGE}, a self-contained page, and each figure as PNG. Exit "
         "status 1 if a number is off by more than its tolerance or a finding does not hold.",
     )
     add_output(
@@ -29,15 +29,15 @@ def add_parser(subparsers: Any) -> None:
         type=Path,
         default=Path("out/paper"),
         metavar="FOLDER",
-        help="for the page and the figures (default out/paper)",
+        help="folder for the page and the figures (default out/paper)",
     )
     add_input(
         parser,
         "--gait",
         type=Path,
         metavar="FOLDER",
-        help="recorded trials to draw beside the plan: CSV files as `saddlewalk replay` takes, and "
-        "manifest.csv, which says what they are, if there is one",
+        help="recorded trials to draw beside the plan: CSV files as for `saddlewalk replay`, and "
+        "manifest.csv, which describes them, if present",
     )
     parser.set_defaults(run=run)
 

@@ -1,4 +1,4 @@
-"""`saddlewalk rerun`: a logged run, computed again from its inputs and compared bit for bit."""
+"""`saddlewalk rerun`: a logged run, recomputed from its inputs and compared bit for bit."""
 
 import argparse
 from pathlib import Path
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "rerun",
-        help="compute a logged run again and compare every output, bit for bit",
-        description="Feed the inputs of a logged run to the core again and compare every output "
-        "bit for bit. Status 0: every output in the log was computed again and is equal; 1: one "
-        "differs, or could not be computed; 2: no log of a run. An LCM log holds all the inputs of "
+        help="recompute a logged run and compare every output, bit for bit",
+        description="Recompute a logged run from its inputs and compare every output "
+        "bit for bit. Status 0: every output in the log was recomputed and is equal; 1: one "
+        "differs or could not be computed; 2: not a log of a run. An LCM log has all inputs of "
         "any run. A CAN log (candump's .log, .blf, .asc, ...) holds those of a run in lockstep "
         "from its start, but for the configuration, which the options give; of HEALTH, the counts "
         "of late ticks and rejected frames are not compared.",
@@ -68,7 +68,7 @@ def _named(log: Path, compute: Any, *arguments: Any) -> "Report":
 def summary(report: "Report") -> list[str]:
     """The report in lines, the first difference before all that follows from it."""
     runs = "1 run" if report.runs == 1 else f"{report.runs} runs"
-    lines = [f"{report.source}: {runs}, {report.ticks} ticks computed again"]
+    lines = [f"{report.source}: {runs}, {report.ticks} ticks recomputed"]
     if report.first:
         lines += [
             str(report.first),

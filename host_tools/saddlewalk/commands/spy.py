@@ -9,8 +9,8 @@ from typing import Any
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "spy",
-        help="open lcm-spy with our types compiled in (needs Java)",
-        description="Open lcm-spy, LCM's window of live channels, fields and curves, with "
+        help="open lcm-spy with our types (needs Java)",
+        description="Open lcm-spy, LCM's window of live channels, fields and plots, with "
         "saddlewalk's types compiled in. Needs a Java development kit and a display; in a "
         "terminal, `saddlewalk monitor` shows the scores.",
     )

@@ -14,7 +14,7 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "supervise",
         help="score recorded states",
-        description="Score recorded states, as CSV. An empty cell is a result that is not there. "
+        description="Score recorded states, as CSV. An empty cell is a missing result. "
         "flags: bits 0-15 saddle_fault_t, 16-23 saddle_limit_t, 24-31 the saddle_reason_t that "
         "decided the level.",
     )
@@ -33,8 +33,8 @@ def add_parser(subparsers: Any) -> None:
         "--speed",
         type=speed,
         metavar="M/S",
-        help="compare with the steady walk that is planned at this speed, its left foot under the "
-        "CoM in the first row; default: with the recorded walk's own last step",
+        help="compare with the steady walk that is planned at this speed, with the left foot under "
+        "the CoM in the first row; default: with the recorded walk's own last step",
     )
     add_body_options(parser)
     parser.set_defaults(run=run)

@@ -1,4 +1,4 @@
-"""The core and an emulated wearer in one process: what the buses do live, tick by tick."""
+"""The core and an emulated wearer in one process, without buses, tick by tick."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ STEPS_A_TICK = round(TICK_S / STEP_S)
 
 @dataclass(frozen=True)
 class Tick:
-    """What the core saw and said at time_s of the walk, before the wearer moves on."""
+    """Input and output of the core at time_s of the walk, before the wearer moves."""
 
     time_s: float
     measured: emulator.Measurement

@@ -36,7 +36,7 @@ class Tick:
 
 
 class Observer:
-    """Sees what goes on; the base class looks away."""
+    """Receives what happens; the base class ignores it."""
 
     def frame(self, frame: can.Message) -> None:
         """Every frame sent (is_rx False) and received (True)."""
@@ -87,8 +87,8 @@ def _recovery_of(messages: Messages) -> RecoveryStep | None:
 class Exoskeleton:
     """Sends the wearer's measurements, follows the plan that comes back, publishes the truth.
 
-    A walk in progress is ended first: the own one begins when the firmware plans to stand.
-    fresh: the firmware has been started for this walk and has heard nobody yet.
+    A walk in progress is stopped first: ours begins when the firmware plans to stand.
+    fresh: the firmware was started for this walk and has not received anything yet.
     if_silent: what the user can do when no firmware answers.
     key: authenticates the commands, which then go by CAN alone.
     """
@@ -117,7 +117,7 @@ class Exoskeleton:
         self._authenticator = None if key is None else Authenticator(key)
         self._codes_demanded = False
         self._begun = False
-        self._unheeded = 0  # ticks in a row
+        self._ignored_ticks = 0  # ticks in a row
         self._pushed_n_s = 0j
 
     def run(self, clock: str, duration_s: float) -> None:
@@ -177,8 +177,8 @@ class Exoskeleton:
     def _exchange(self) -> Messages:
         """Send what is measured and wait for the firmware's tick.
 
-        Firmware that heard another wearer before refuses the first set, whose counters are new; so
-        until it has answered once, the set is sent again. Fresh firmware would tick for each.
+        Firmware that had another wearer before rejects the first set, whose counters are new; so
+        the set is repeated until the first answer. Fresh firmware would tick for each.
         """
         deadline_s = time.monotonic() + SILENCE_S
         patience_s = SILENCE_S if self.ticks or self._fresh else RESEND_S
@@ -203,9 +203,9 @@ class Exoskeleton:
         self._begun = self._begun or (plan is not None and plan.mode == STANDING)
         plan = plan if self._begun else None
         self.ticks += 1
-        self._unheeded = self._unheeded + 1 if self._is_unheeded(plan) else 0
-        if self._unheeded > START_TICKS:
-            raise self._disobedient()
+        self._ignored_ticks = self._ignored_ticks + 1 if self._ignores_command(plan) else 0
+        if self._ignored_ticks > START_TICKS:
+            raise self._wrong_response()
         self.health = messages["HEALTH"]
         self.mode = plan.mode if plan else None
         self._wearer.follow(plan)
@@ -213,15 +213,15 @@ class Exoskeleton:
         for observer in self._observers:
             observer.tick(tick, self._wearer)
 
-    def _disobedient(self) -> UserError:
+    def _wrong_response(self) -> UserError:
         options = "--command-key" if self._codes_demanded else "--clock and --lcm"
         return UserError(
             f"the firmware on {self._bus.channel_info} answers but does not do as commanded: "
             f"give both the same {options}"
         )
 
-    def _is_unheeded(self, plan: Plan | None) -> bool:
-        """The firmware does not stand before the walk, or stands though it is to walk."""
+    def _ignores_command(self, plan: Plan | None) -> bool:
+        """The firmware does not stand before the walk, or stands despite a walk command."""
         to_walk = self._command(self._wearer.time_s)[0] == WALK
         return not self._begun or (to_walk and plan is not None and plan.mode == STANDING)
 
@@ -251,7 +251,7 @@ class Exoskeleton:
         return WALK if walk else STAND, speed_m_s, asked.heel_strike_rad
 
     def _send_command_frame(self, time_s: float) -> None:
-        """Authenticated, there is none until the firmware has opened a session."""
+        """With authentication, none is sent until the firmware has opened a session."""
         names = ("MODE", "SPEED", "HEEL_STRIKE")
         command = dict(zip(names, self._command(time_s), strict=True))
         if self._authenticator:

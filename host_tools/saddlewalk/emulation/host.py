@@ -16,7 +16,7 @@ STOP_TIMEOUT_S = 5.0
 def running_host(*options: str) -> Iterator[subprocess.Popen[str]]:
     """Starts it, waits until it is ready, and ends it by SIGTERM when the block ends.
 
-    Raises UserError with its last words if it does not become ready or does not end with status 0.
+    Raises UserError with its last line if it does not become ready or does not end with status 0.
     """
     program = [str(built("bin/saddlewalk-host")), *options]
     process = subprocess.Popen(
@@ -47,7 +47,7 @@ def _await_ready(process: subprocess.Popen[str]) -> None:
 
 
 def _stop(process: subprocess.Popen[str]) -> str:
-    """Its last words. A process that ignores SIGTERM is killed, which its status then shows."""
+    """Its last line. A process that ignores SIGTERM is killed, which its status then shows."""
     process.terminate()
     try:
         return process.communicate(timeout=STOP_TIMEOUT_S)[0]

@@ -1,4 +1,4 @@
-"""The firmware's ticks as a walk in real time takes them: each at its own time of the walk."""
+"""The firmware's ticks in real time, each processed at its own time of the walk."""
 
 import time
 from collections.abc import Callable
@@ -11,13 +11,13 @@ from saddlewalk.ticks import FrameBus, Messages, next_tick
 
 WAKE_UP_S = 0.01  # measurements at 100 Hz
 WAKE_UPS_A_TICK = round(TICK_S / WAKE_UP_S)
-GRACE_S = 0.025  # that a tick is waited for beyond its time: firmware may be late as well
-ARRIVALS = 3  # by the earliest of which the clock is set
+GRACE_S = 0.025  # maximum wait beyond a tick's time: the firmware may be late too
+ARRIVALS = 3  # the earliest sets the clock
 _COUNTS = 16  # of the alive counter
 
 
 class PacedTicks:
-    """Sets a clock by the firmware's ticks and hands each out at the wake-up that it is for.
+    """Synchronises a clock to the firmware's ticks and returns each at its own wake-up.
 
     So a walk does not depend on when its process was started, nor, within limits, on how late one
     of the two is: a process that was late finds ticks in the queue whose time is yet to come.
@@ -32,7 +32,7 @@ class PacedTicks:
         """Raises UserError when a tick is silence_s away; hear() makes ticks of frames."""
         self._bus, self._hear = bus, hear
         self._held: Messages | None = None
-        while next_tick(bus, hear, 0.0):  # these came at no time that is known
+        while next_tick(bus, hear, 0.0):  # their arrival times are unknown
             pass
         messages: Messages | None = None
         arrivals: list[float] = []
@@ -46,7 +46,7 @@ class PacedTicks:
         self._counter, self._place = messages["HEALTH"]["COUNTER"], 0
 
     def at(self, wake_up: int, deadline_s: float) -> list[Messages]:
-        """What is to be followed from this wake-up on; returns at its deadline, or soon after."""
+        """The ticks for this wake-up; returns at its deadline, or soon after."""
         ticks: list[Messages] = []
         while self._has_next(wake_up, deadline_s) and self._held is not None:
             ticks.append(self._held)

@@ -1,4 +1,4 @@
-"""Whether the computer let a walk in real time keep its time."""
+"""Whether the computer kept up with a walk in real time."""
 
 import math
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ BEFORE_S = 3.0  # a fall takes up to two steps
 
 @dataclass
 class Stall:
-    """The wearer's own process did not run: at time_s of the walk, for so long."""
+    """The wearer's process did not run for late_s, at time_s of the walk."""
 
     time_s: float
     late_s: float
@@ -17,7 +17,7 @@ class Stall:
 
 @dataclass
 class Punctuality:
-    """How late the wearer's process was for its measurements, and when ticks failed to come."""
+    """How late the wearer's process measured, and the longest gap between ticks."""
 
     worst_s: float = 0.0
     gap_s: float = 0.0  # the longest between two ticks, as they came
@@ -30,12 +30,12 @@ class Punctuality:
         self.worst_s = max(self.worst_s, late_s)
         if late_s > STALL_S and self._late_s <= STALL_S:
             self.stalls.append(Stall(time_s, late_s))
-        elif late_s > STALL_S:  # it catches up, or is stalled again before it has
+        elif late_s > STALL_S:  # not yet caught up, or stalled again
             self.stalls[-1].late_s = max(self.stalls[-1].late_s, late_s)
         self._late_s = late_s
 
     def ticked(self, now_s: float) -> None:
-        """A tick came, by a clock that no one sets."""
+        """A tick was received, by the monotonic clock."""
         self.gap_s = max(self.gap_s, now_s - self._tick_s)  # the first is no gap: not a number
         self._tick_s = now_s
 

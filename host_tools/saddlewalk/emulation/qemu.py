@@ -28,7 +28,7 @@ _SETTINGS_ADDRESS = 0x003FF000
 
 
 class Controller:
-    """A running controller: its bus, and once the block has ended, what it told of itself."""
+    """A running controller: its bus, and once the block has ended, its last line of output."""
 
     def __init__(self, bus: SlcanBus) -> None:
         self.bus = bus
@@ -39,8 +39,8 @@ class Controller:
 def running_controller(config: Any, clock: str = "lockstep") -> Iterator[Controller]:
     """Starts it with a configuration; when the block ends, its bus is closed, which ends it.
 
-    Raises UserError if something is missing, or with its last words if it failed, whatever else
-    that led to in the block.
+    Raises UserError if something is missing, or with its last line if it failed, whatever
+    exception that caused in the block.
     """
     if problem := missing():
         raise UserError(problem)
@@ -79,7 +79,7 @@ def settings_page(config: Any, clock: str) -> bytes:
 
 
 def missing() -> str:
-    """What to do before a controller can run; empty if nothing is missing."""
+    """What is missing to run a controller, with the remedy; empty if nothing is."""
     if shutil.which(_EMULATOR) is None:
         return f"{_EMULATOR} is missing: as root, apt-get install -y qemu-system-arm"
     if IMAGE.exists():

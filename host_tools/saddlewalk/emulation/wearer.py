@@ -1,10 +1,9 @@
-"""An emulated wearer and exoskeleton: what the firmware's plan does to a body that can fall.
+"""An emulated wearer and exoskeleton: a body that follows the firmware's plan and can fall.
 
-The CoM is a linear inverted pendulum about the CoP, and the CoP cannot leave the feet that stand.
-The feet follow the planned swing with a lag and stay where they land. The wearer steers by the
-CoP (ankle strategy). Where to step is the firmware's to say: one kind of wearer keeps to the
-planned steps whatever happens, the other takes the firmware's recovery step, as far and as fast as
-its legs can.
+The CoM is a linear inverted pendulum about the CoP, which stays within the standing feet.
+The feet follow the planned swing with a lag and stay where they land. The wearer balances by
+moving the CoP (ankle strategy). The firmware decides where to step: one kind of wearer always keeps
+to the planned steps, the other takes the firmware's recovery step, within its legs' reach and speed.
 
 Points of the transverse plane are complex numbers, x forward + 1j * y to the left, in metres: a
 step of 1 ms in plain floats is ten times faster than in arrays. World frame: x from the start,
@@ -23,9 +22,9 @@ STEP_S = 1e-3
 STANCE_M = 0.11  # from the middle to each foot of a wearer who stands and waits
 SPEED_MIN_M_S = 0.01  # slower steps last as long as if so fast
 REST_SHARE = 1 - 2 / math.pi  # of the way to the middle, from the foot over which a walk ends
-NEARBY_M = 0.08 + 0.05j  # a recovery step so near to the planned one is not worth leaving that
-IN_NEED_M = 0.13 + 0.07j  # an XCoM off the planned one by more makes the wearer hurry
-ARRIVED_M = 0.02  # and lands this near to its place
+NEARBY_M = 0.08 + 0.05j  # a recovery step this close to the planned one is ignored
+IN_NEED_M = 0.13 + 0.07j  # the wearer hurries if the XCoM is off the planned one by more
+ARRIVED_M = 0.02  # within this distance a step has reached its place
 
 
 @dataclass(frozen=True)
@@ -33,7 +32,7 @@ class Body:
     """The wearer. Mass, height and pendulum ratio as in the firmware's configuration.
 
     `double_support`, `heel_m` and `toe_m` were tuned in November 2026 so that the unperturbed XCoM
-    and speed vary as in recorded adults (0.07 m, 0.12 m/s); tests/python/test_emulator.py holds it.
+    and speed vary as in recorded adults (0.07 m, 0.12 m/s), as tests/python/test_emulator.py checks.
     """
 
     mass_kg: float = 63.3
@@ -128,7 +127,7 @@ class Plan:
     swing_velocity_m_s: complex
     swing_rise_m_s: float
     time_to_via_point_s: float
-    time_to_landing_s: float  # not told of a last swing
+    time_to_landing_s: float  # not planned for a last swing
     landing_m: complex
     leg_length_m: float
     recovery: RecoveryStep | None = None  # None: no place helps, or nothing to compare with
@@ -160,7 +159,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Measurement:
-    """What the exoskeleton's sensors tell; feet relative to the CoM."""
+    """Readings of the exoskeleton's sensors; feet relative to the CoM."""
 
     height_m: float
     velocity_m_s: complex
@@ -228,9 +227,9 @@ def _limited(point: complex, limit: complex) -> complex:
 class Wearer:
     """Stands until the first plan comes, and follows it.
 
-    The plan's frame is held against the stance foot that is really there, so that landings beside
-    their place do not add up. `follow(plan)` gives the newest plan, `step()` advances by 1 ms. One
-    seed, one sequence of calls: the same bits. A fall is for good: `fallen` when the CoM is lower
+    The plan's frame is attached to the actual stance foot, so that landing errors do not
+    accumulate. `follow(plan)` gives the newest plan, `step()` advances by 1 ms. One
+    seed and sequence of calls give the same bits. A fall is final: `fallen` when the CoM is lower
     over every supporting foot than `fall_height` of the pendulum, that is too far away from them to
     be carried.
     """
@@ -285,7 +284,7 @@ class Wearer:
         return self.com_m + self.velocity_m_s / self.body.natural_frequency_rad_s
 
     def measure(self) -> Measurement:
-        """What noisy sensors see now; every call draws its own noise."""
+        """Noisy sensor readings; every call draws new noise."""
         position, velocity = self.noise.position_m, self.noise.velocity_m_s
         draw = [float(value) for value in self._random.standard_normal(7)]
         exact = self.exact()
@@ -301,7 +300,7 @@ class Wearer:
         )
 
     def exact(self) -> Measurement:
-        """What sensors without noise would see now."""
+        """Sensor readings without noise."""
         left, right = (foot.position_m - self.com_m for foot in self.feet)
         return Measurement(
             height_m=self.height_m,
@@ -560,7 +559,7 @@ class Wearer:
                 self.pushed_n_s += impulse
 
     def _carry(self) -> None:
-        """Height from the legs that carry; a fall when none can."""
+        """Height from the supporting legs; a fall if there is none."""
         reach = self.body.pendulum_m * math.sqrt(1 - self.body.fall_height**2)
         leading, trailing = self.feet[self._leading], self.feet[1 - self._leading]
         if self._plan is not None and self._plan.support == self._leading:

@@ -1,1 +1,1 @@
-"""What the supervisor is worth: emulated falls, recorded people, the claims of the model."""
+"""How well the supervisor predicts falls: emulated and recorded walkers, claims of the model."""

@@ -1,5 +1,6 @@
-"""Each kind of walker by what the others taught: does one threshold fit everybody, and can the
-margin be read as a probability of falling?
+"""Leave one out: each kind of walker is evaluated with what was fitted to the others.
+
+Does one threshold fit all, and can the margin be read as a probability of falling?
 
 Emulated wearers are one kind, whichever steps they take; every recorded walker is one of its own.
 """
@@ -22,14 +23,14 @@ EMULATED = "emulated"
 
 @dataclass(frozen=True)
 class CrossValidation:
-    """A walker's figures with what the others taught."""
+    """A walker's figures with what was fitted to the others."""
 
     threshold: float  # of the margin, where the others' timely alarms exceed the false ones most
     timely_pct: float
     alarm_though_upright_pct: float
     zero_margin_probability: float  # of a fall within HORIZON_S at margin 0, by the others
     brier: float  # mean square of probability less outcome, over the ticks after a push
-    brier_of_base_rate: float  # of one who always says the walker's own share
+    brier_of_base_rate: float  # of always predicting the walker's own share
     reliability: list[tuple[float, float, int]]  # predicted share, observed share, ticks
 
 
@@ -129,7 +130,10 @@ def _reliability(predicted: np.ndarray, falls: np.ndarray) -> list[tuple[float, 
 
 
 def table(found: Mapping[str, CrossValidation]) -> Table:
-    shown = Table(title="Each kind of walker by what the others taught", title_justify="left")
+    shown = Table(
+        title="Leave one out: each kind of walker by thresholds from the others",
+        title_justify="left",
+    )
     shown.add_column("")
     for name in found:
         shown.add_column(name.replace("_", " "), justify="right")

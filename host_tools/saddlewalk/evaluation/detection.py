@@ -1,4 +1,4 @@
-"""How well falls were foretold: rates, lead times and ROC of the evaluated walks."""
+"""Prediction of falls: rates, lead times and ROC of the evaluated walks."""
 
 import math
 from collections import Counter
@@ -66,7 +66,7 @@ def detection_of(walks: Iterable[Walk]) -> Detection:
 
 
 def recovery_benefit(walks: Iterable[Walk]) -> dict[str, float]:
-    """What the recovery step is worth: the same pushes, drawn without regard to any limit."""
+    """Effect of the recovery step, on uniformly random pushes."""
     fell: dict[int, dict[str, bool]] = {}
     for walk in walks:
         if walk.trial.impulse_n_s > 0 and walk.trial.cell < 0:

@@ -1,4 +1,4 @@
-"""An emulated walk in the terms by which every walker is scored."""
+"""Emulated walks in the form in which every walker is scored."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ from saddlewalk.table import Cell
 
 
 class TickRecorder:
-    """Sees every tick of a walk, and what the supervisor that leads the wearer says."""
+    """Records every tick of a walk, with the output of the wearer's supervisor."""
 
     def __init__(self, config: Any) -> None:
         body = Body.of(config)

@@ -1,4 +1,4 @@
-"""Pictures of recorded falls: ROC curves, and single walks with all that was said of them."""
+"""Pictures of recorded falls: ROC curves, and single walks with the supervisor's output."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

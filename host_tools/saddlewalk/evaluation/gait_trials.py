@@ -1,4 +1,4 @@
-"""Recorded walks of people who did not fall, judged by the core: whatever it announces is false."""
+"""Recorded walks of people who did not fall, scored by the core: every alarm is false."""
 
 import csv
 import math
@@ -24,7 +24,7 @@ MANIFEST = "manifest.csv"  # beside the trials: file, height_m, mass_kg where th
 
 @dataclass(frozen=True)
 class GaitTrial:
-    """What was announced of a recording."""
+    """Announced levels of a recording."""
 
     name: str
     height_m: float

@@ -25,10 +25,10 @@ AXES = ("x (m), forward", "y (m), to the left", "x velocity (m/s)", "y velocity 
 PLANES = ((0, 2), (1, 3))
 POINTS = 81
 VERDICTS = (
-    ("rightly unsafe", "0.93"),
-    ("cautious: could stop, not so said", SKY),
-    ("wrongly safe: so said, cannot stop", RED),
-    ("rightly safe", GREEN),
+    ("true unsafe", "0.93"),
+    ("false unsafe: can stop", SKY),
+    ("false safe: cannot stop", RED),
+    ("true safe", GREEN),
 )
 
 
@@ -47,7 +47,7 @@ def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
             axes.set(
                 title=f"takes {kind} steps; evidence: {window}",
                 xlabel="alarms among those who stayed up",
-                ylabel="falls foretold",
+                ylabel="falls predicted",
                 aspect="equal",
             )
     row[-1].legend(loc="lower right", fontsize=8)
@@ -55,7 +55,7 @@ def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
 
 
 def draw_reliability(found: Mapping[str, CrossValidation], path: Path) -> None:
-    """What came true against what was said, of each walker by what the others taught."""
+    """Observed against predicted falls, of each walker with the fit to the others."""
     figure = Figure(figsize=(6, 6), dpi=110, layout="constrained")
     axes = figure.subplots()
     axes.plot([0, 1], [0, 1], color="0.8", lw=0.8)
@@ -67,9 +67,9 @@ def draw_reliability(found: Mapping[str, CrossValidation], path: Path) -> None:
             predicted, observed, s=sizes, color=COLOURS[index % 8], label=name.replace("_", " ")
         )
     axes.set(
-        title="Falls within a second, by what the other walkers taught",
-        xlabel="said by the margin",
-        ylabel="came true",
+        title="Falls within a second, predicted from the other walkers",
+        xlabel="predicted from the margin",
+        ylabel="observed",
         aspect="equal",
     )
     axes.legend(loc="upper left")
@@ -77,7 +77,7 @@ def draw_reliability(found: Mapping[str, CrossValidation], path: Path) -> None:
 
 
 def draw_region(config: Any, path: Path) -> None:
-    """What can_stop says, with the XCoM as well, against the pendulum with bounded ankle work."""
+    """can_stop, alone and with the XCoM, against the pendulum with bounded ankle work."""
     claims = ("can_stop", "stays")
     figure = Figure(figsize=(15, 13), dpi=100, layout="constrained")
     rows = figure.subplots(len(claims) * len(PLANES), len(POSTURES))

@@ -1,4 +1,4 @@
-"""Recorded falls of walkers that nobody here wrote, scored by the core without a command.
+"""Recorded falls of independent walkers, scored by the core without a command.
 
 A folder holds walkers.csv, walks.csv and states/WALKER.csv.gz, 50 rows a second. Every fourth row
 is a tick, and each run begins with another of its first four.
@@ -60,7 +60,7 @@ class Walker:
 
 @dataclass(frozen=True)
 class Scored:
-    """A run, what was said of it on exact inputs, and its scores by INPUTS."""
+    """A run, the announcements on exact inputs, and its scores by INPUTS."""
 
     walk: Walk
     exact: Announced
@@ -176,7 +176,7 @@ def _read_states(source: str, first_rows: Mapping[str, int]) -> dict[str, list[l
 
 
 def _check_state(where: str, numbers: Mapping[str, float], last_s: float) -> None:
-    """What the scores cannot do without; any other number may be missing."""
+    """Reject rows without what the scores need; other numbers may be missing."""
     if not last_s < numbers["t_s"] < math.inf:
         raise UserError(f"{where}, t_s: {numbers['t_s']:g} must be a time after {last_s:g} s")
     for column in ("left_contact", "right_contact"):
@@ -223,7 +223,7 @@ def _score(walk: Walk, image: bytes, seed: int) -> Scored:
 
 
 def supervise(walk: Walk, seen: States, config: Any) -> Announced:
-    """What a supervisor without a command says of these states of a walk."""
+    """The announcements of a supervisor without a command for these states."""
     rows = scored_rows(recording_core(config), Command(), _measurements(walk.name, seen))
     return announced(walk, list(rows), seen)
 

@@ -1,4 +1,4 @@
-"""Which states a pendulum with feet can be brought to rest from, against what the core says.
+"""States from which a pendulum with feet can come to rest, against the core's claims.
 
 The linear pendulum about a CoP that may be anywhere in the soles that stand comes to rest if the
 CoP goes beyond the XCoM, away from the middle of the soles, as far as they reach: the XCoM then
@@ -57,7 +57,7 @@ class Region:
     states: np.ndarray
     stops: np.ndarray  # the pendulum can be brought to rest
     stops_within_work: np.ndarray  # and with bounded ankle work
-    claims: dict[str, np.ndarray]  # by the keys of CLAIMS, what the core says
+    claims: dict[str, np.ndarray]  # by the keys of CLAIMS
 
     def confusion(self, claim: str) -> dict[str, int]:
         """States by what is claimed and what is true; `false_safe` breaks the paper's claim.

@@ -1,7 +1,7 @@
 """How well falls were announced: one set of definitions for emulated, simulated and recorded walks.
 
-A walk is what happened, an announcement what the supervisor said of it tick by tick. Evidence is
-what was said after the push, up to 0.24 s before the fall: later the fall gives itself away.
+A walk is what happened, an announcement the supervisor's output for it, tick by tick. Evidence is
+the output after the push, up to 0.24 s before the fall: after that the fall is obvious.
 """
 
 import math
@@ -86,7 +86,7 @@ class Walk:
 
 @dataclass(frozen=True)
 class Announced:
-    """What was said at each tick of a walk: numbers of LEVELS and REASONS, and each margin."""
+    """The output at each tick of a walk: numbers of LEVELS and REASONS, and each margin."""
 
     level: np.ndarray
     reason: np.ndarray
@@ -336,7 +336,7 @@ def _steady(scores: Sequence[Score]) -> dict[str, Any]:
 
 
 def calm_figures(levels: Sequence[Levels]) -> dict[str, Any]:
-    """What was said of steady walking without a push."""
+    """The output for steady walking without a push."""
     return {
         "calm": shares(levels),
         **{

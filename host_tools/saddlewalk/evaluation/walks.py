@@ -1,4 +1,4 @@
-"""Emulated walks with random pushes, and what the supervisor said before the wearer fell.
+"""Emulated walks with random pushes, and the supervisor's output before the wearer fell.
 
 Everything follows from a seed and the number of walks. A walk begins from standing; once it is
 steady the wearer is pushed. Even walks draw any push, the same for both kinds of wearer. Odd walks
@@ -78,7 +78,7 @@ MARGINS: dict[str, Callable[[Any], Any]] = {
 
 @dataclass(frozen=True)
 class Trial:
-    """An emulated walk to be. impulse_n_s 0: nobody pushes, and the walk is stopped at STOP_S."""
+    """Parameters of an emulated walk. impulse_n_s 0: no push, and the walk is stopped at STOP_S."""
 
     kind: str
     index: int
@@ -260,7 +260,7 @@ def _add_baselines(ticks: np.ndarray, config: Any) -> None:
 
 
 def evaluated_walk(trial: Trial, course: Course, exact: Course) -> Walk:
-    """What a walk tells, and the same walk with exact sensors."""
+    """The evaluation of a walk, and of the same walk with exact sensors."""
     ticks, fell_at_s = course.ticks, course.fell_at_s
     time_s, level = ticks["time_s"], ticks["level"]
     pushed = np.full(len(ticks), trial.impulse_n_s > 0) & (time_s >= trial.push_time_s)
@@ -326,7 +326,7 @@ def _walk_chain(
 
 
 def draw(seed: int, index: int, kind: str, mass_kg: float) -> Trial:
-    """Walk `index`, but for the push of a staircase; an index below 0: nobody pushes."""
+    """Walk `index`, but for the push of a staircase; an index below 0: no push."""
     random = np.random.default_rng([seed, abs(index), int(index < 0)])
     speed, direction, time, hardness = random.random(4).tolist()
     side = 1 if random.random() < 0.5 else -1

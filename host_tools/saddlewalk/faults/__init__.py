@@ -1,1 +1,1 @@
-"""A bus that misbehaves: scenarios, campaigns, and what counts as unsafe."""
+"""Fault injection: scenarios, campaigns, and the definition of unsafe output."""

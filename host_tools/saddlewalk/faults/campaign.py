@@ -1,4 +1,4 @@
-"""Emulated walks on which faults happen, and whether the firmware stayed safe.
+"""Emulated walks with injected faults, and whether the firmware stayed safe.
 
 In lockstep a walk goes by a clock of its own, in one process: frames and their codec, CRC, counters
 and ages are those of the firmware's libraries, and nothing else decides when a frame arrives.
@@ -31,15 +31,17 @@ CLOCK_BEGIN_S = 4000.0  # so that the clock may jump back
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of one walk. Ticks count from the one after the fault began, which is 0."""
+    """Result of one walk. Ticks count from the one after the fault began, which is 0."""
 
     fault: Fault
     live: bool
-    detected: int | None  # the tick in which the firmware said that something is amiss
+    detected: int | None  # the tick in which the firmware reported a problem
     state: str  # of STATES
     violations: tuple[str, ...]  # none: safe
-    blind: int  # ticks with a level for data that are older than the limit, as only we know
-    forged: int  # frames of others that were taken for good
+    blind: (
+        int  # ticks with a level from data that are older than the limit, unknown to the firmware
+    )
+    forged: int  # accepted frames of other senders
     fell: bool
 
 
@@ -69,7 +71,7 @@ class Device:
         return self._inbox.receiver.accepted != before
 
     def tick(self, time_us: int) -> Messages:
-        """One tick, as it is told on CAN."""
+        """One tick, as sent on CAN."""
         lib, output = library(), self._output
         lib.saddle_tick(self._context, lib.saddle_inbox_read(self._inbox, time_us), output)
         self._publish_health()
@@ -102,12 +104,12 @@ class Device:
 def run(
     scenario: Scenario, index: int, number: int, seed: int, config: Any
 ) -> tuple[Outcome, list[Messages]]:
-    """Walk `number` with the scenario's fault `index`, in lockstep; all that was told, too."""
+    """Walk `number` with the scenario's fault `index`, in lockstep, with the messages of every tick."""
     random = np.random.default_rng([seed, index, number])
     fault = scenario.faults[index]
     occurrence = draw(fault, random)
     line = Line([occurrence], random)
-    asked = Asked(float(random.uniform(*scenario.speed_m_s)))
+    asked = EndlessWalk(float(random.uniform(*scenario.speed_m_s)))
     wearer = Wearer(Body.of(config), seed=int(random.integers(2**32)))
     device, sender = Device(config), wire.Sender()
     checker = Checker(config, core.body_of(config), occurrence.begin_s)
@@ -132,8 +134,8 @@ def run(
 
 
 @dataclass(frozen=True)
-class Asked:
-    """A walk that goes on for ever."""
+class EndlessWalk:
+    """The command of a walk that never ends."""
 
     speed_m_s: float
 
@@ -144,7 +146,7 @@ class Asked:
 
 
 def measured_signals(wearer: Wearer) -> list[tuple[str, dict[str, float]]]:
-    """What the wearer's sensors tell now, as the messages that carry it."""
+    """The wearer's sensor readings, as CAN messages."""
     measured = wearer.measure()
     velocity = measured.velocity_m_s
     com = {"HEIGHT": measured.height_m, "VX": velocity.real, "VY": velocity.imag}
@@ -167,7 +169,7 @@ def _clock_s(occurrence: Occurrence, walk_s: float) -> float:
 
 
 def _onset_s(occurrence: Occurrence, line: Line) -> float:
-    """When the fault first did something."""
+    """When the fault first took effect."""
     return line.onset_s if occurrence.is_of_frames and occurrence.kind != "none" else 0.0
 
 

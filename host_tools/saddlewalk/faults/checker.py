@@ -1,4 +1,4 @@
-"""What the firmware must never do, whatever happens on the way to it; and when it is done."""
+"""Checks for unsafe output, whatever faults were injected."""
 
 import math
 from collections import Counter
@@ -17,10 +17,10 @@ LONGEST_STEP = 2.1  # of half_step_max_m
 ROUNDING = 1e-3  # of the wire, at most
 STOP_WITHIN_S = 6.0  # from any speed, at the default deceleration
 
-# The worst that was said after a fault began, the worst first.
+# The most cautious state reported after a fault began, the most cautious first.
 STATES = ("safe stop", "no plan", "unknown", "unstable", "caution", "walked on")
 
-# Flaws: what the firmware must never do.
+# Violations: what the firmware must never do.
 BAD_PLAN = "plan out of bounds"
 OLD_SCORE = "score of old data"
 SILENT_STOP = "silent stop"
@@ -42,16 +42,16 @@ _SCORES_OF_COM = {
 
 @dataclass
 class MessageRecord:
-    """What is known, beside the firmware, of one message."""
+    """Independent record of one message."""
 
-    came_s: float = -math.inf  # the newest that was accepted, by the firmware's clock
-    usable_s: float = -math.inf  # that could be used, too
-    born_s: float = math.inf  # when what the newest tells was so
+    came_s: float = -math.inf  # last accepted, by the firmware's clock
+    usable_s: float = -math.inf  # last accepted and usable
+    born_s: float = math.inf  # when the last accepted one was measured
 
 
 @dataclass
 class Checker:
-    """Follows a walk tick by tick and finds what must not be. begin_s: of the fault."""
+    """Checks a walk tick by tick. begin_s: of the fault."""
 
     config: Any
     body: Any  # saddle_body_t
@@ -61,7 +61,7 @@ class Checker:
     )
     violations: Counter[str] = field(default_factory=Counter)
     detected: int | None = None
-    walk_commanded: bool = False  # by whom the firmware shall obey
+    walk_commanded: bool = False  # by the commands that the firmware must follow
     blind: int = 0
     forged: int = 0
     states: set[str] = field(default_factory=set)
@@ -119,7 +119,7 @@ class Checker:
         return limits.get(name, self.config.foot_max_age_s) + 1e-6
 
     def _detect(self, messages: Messages, walk_s: float) -> None:
-        """By what the firmware says, against what it said before the fault began."""
+        """By the firmware's reports, compared with those before the fault began."""
         lib, health = library(), messages["HEALTH"]
         reported = lib.SADDLE_LIMIT_SAFE_STOP | lib.SADDLE_LIMIT_TICK_GAP
         faults = int(messages["SCORES_FORCE"]["FAULTS"])
@@ -179,7 +179,7 @@ class Checker:
     def _check_stop(
         self, messages: Messages, stopping: bool, ages_s: dict[str, float], clock_s: float
     ) -> None:
-        """Lost inputs stop the walk, and nothing else does without a word."""
+        """Lost inputs stop the walk, and nothing else stops it unreported."""
         mode = int(messages["PLAN_EVENTS"]["MODE"])
         ended = mode in (STOPPING, STANDING) and self._mode in (STARTING, WALKING)
         if ended and self.walk_commanded and not stopping:

@@ -1,4 +1,4 @@
-"""Walks in real time on which faults happen: the emulated wearer's frames, the host process."""
+"""Walks in real time with injected faults: frames of the emulated wearer, the host process."""
 
 import math
 import signal
@@ -27,14 +27,14 @@ from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.lcmbus import open_lcm
 
 AT_ONCE = 4  # they hardly compute, but must not wait for each other
-SLACK_S = 0.1  # from the firmware's tick until it is judged
+SLACK_S = 0.1  # from the firmware's tick until it is checked
 STALL_MAX_S = 2.0  # the wearer gives up a firmware that is silent for longer
 OF_FRAMES_ONLY = ("duplicate", "flip", "spoof")  # not of commands, which go by LCM
 _AGES = dict(zip(MESSAGES, ("COMMAND_AGE", "COM_AGE", "LEFT_AGE", "RIGHT_AGE"), strict=True))
 
 
 class FaultyBus:
-    """A bus on which frames that are sent go by a Line. Delayed ones are sent when it is used."""
+    """A bus that sends frames through a Line. Delayed ones are sent at the next call."""
 
     def __init__(self, bus: can.BusABC, line: Line, now_s: Callable[[], float]) -> None:
         self._bus, self._line, self._now_s = bus, line, now_s
@@ -56,7 +56,7 @@ class FaultyBus:
 
 
 class FaultyLcm:
-    """LCM on which commands go by a Line. They have neither CRC nor counter there."""
+    """LCM that sends commands through a Line. They have neither CRC nor counter there."""
 
     def __init__(self, lcm: Any, line: Line, now_s: Callable[[], float]) -> None:
         self._lcm, self._line, self._now_s = lcm, line, now_s
@@ -72,7 +72,7 @@ class FaultyLcm:
         numbers = {"SPEED": command.speed_m_s, "HEEL_STRIKE": command.heel_strike_rad}
         self._line.send(self._sender.frame("COMMAND", MODE=command.mode, **numbers), self._now_s())
         for arrival in self._line.due(self._now_s()):
-            if arrival.forged:  # what is flipped there, UDP drops; nobody else speaks
+            if arrival.forged:  # UDP drops corrupted datagrams, and there is no other sender
                 continue
             signals = wire.signals(arrival.frame)
             command.mode, command.speed_m_s = int(signals["MODE"]), signals["SPEED"]
@@ -94,8 +94,8 @@ def faulty(
 
 
 class _LiveChecker(Observer):
-    """The checker of a live walk: ages are those that the firmware tells, but none is younger than
-    the last frame that was sent."""
+    """The checker of a live walk: ages are those that the firmware reports, but none is younger
+    than the last frame that was sent."""
 
     def __init__(self, checker: Checker, occurrence: Occurrence, lines: tuple[Line, ...]) -> None:
         self.sent_s: dict[str, float] = {}

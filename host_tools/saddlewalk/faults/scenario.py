@@ -1,4 +1,4 @@
-"""Faults on the way from the emulated wearer to the firmware, by a scenario file.
+"""Faults between the emulated wearer and the firmware, from a scenario file.
 
 A scenario is a TOML file, such as `examples/faults.toml`: a `[walk]`, and `[[fault]]` tables, each
 of a class of KINDS with its strengths. Faults happen to frames, between what is measured and the
@@ -37,12 +37,12 @@ _NUMBERS = {
 
 @dataclass(frozen=True, order=True)
 class Arrival:
-    """A frame that gets to the firmware at time_s."""
+    """A frame that reaches the firmware at time_s."""
 
     time_s: float
     order: int  # of those that arrive at once
     frame: can.Message = field(compare=False)
-    born_s: float = field(compare=False)  # when what it tells was so
+    born_s: float = field(compare=False)  # when its content was measured
     forged: bool = field(default=False, compare=False)  # bits flipped, or of another sender
 
 
@@ -96,7 +96,7 @@ def _duplicate(copies: float, _: np.random.Generator) -> Disturbance:
 
 
 def _stuck(_: float, __: np.random.Generator) -> Disturbance:
-    """Every frame tells what the first one told, with a counter that goes on."""
+    """Every frame repeats the first one's values, with a running counter."""
     first: dict[int, Arrival] = {}
 
     def disturb(arrival: Arrival) -> list[Arrival]:
@@ -151,7 +151,7 @@ def _flip(bits: float, random: np.random.Generator) -> Disturbance:
 
 def _spoof(share: float, random: np.random.Generator) -> Disturbance:
     """After a share of the frames comes another sender's: its counter is out of step, its CRC is
-    right, and it tells something else."""
+    right, and its values differ."""
 
     def disturb(arrival: Arrival) -> list[Arrival]:
         if random.random() >= share:
@@ -184,20 +184,20 @@ def _nan(share: float, random: np.random.Generator) -> Disturbance:
 
 
 KINDS = {
-    "none": Kind("of nothing", 0, 0, _none),
+    "none": Kind("unused", 0, 0, _none),
     "loss": Kind("share of the frames that are lost", 0, 1, _loss),
     "burst": Kind("how long all frames are lost, about once a second, s", 0, LONGEST_S, _burst),
-    "delay": Kind("how much later frames come, s", 0, LONGEST_S, _delay),
+    "delay": Kind("delay of the frames, s", 0, LONGEST_S, _delay),
     "duplicate": Kind("copies of each frame", 0, 100, _duplicate),
-    "reorder": Kind("frames come up to so much later, each its own time, s", 0, 60, _reorder),
-    "stuck": Kind("of nothing: it repeats its first values", 0, 1, _stuck, MEASURED),
+    "reorder": Kind("maximum of the random delay of each frame, s", 0, 60, _reorder),
+    "stuck": Kind("unused: it repeats its first values", 0, 1, _stuck, MEASURED),
     "noise": Kind("standard deviation in m, m/s and rad", 0, 1000, _noise),
     "bias": Kind("added to or taken from each number, m, m/s and rad", 0, 1000, _bias),
     "flip": Kind(f"bits flipped in {FLIPPED_SHARE:.0%} of the frames", 1, FRAME_BITS, _flip),
     "spoof": Kind("share of the frames that another sender's follows", 0, 1, _spoof),
-    "nan": Kind("share of the frames of which a number is not one", 0, 1, _nan),
+    "nan": Kind("share of the frames with a NaN", 0, 1, _nan),
     "clock": Kind("by which the firmware's clock jumps once, s", -LONGEST_S, LONGEST_S, None),
-    "stall": Kind("how long the firmware's process stands still, s", 0, LONGEST_S, None),
+    "stall": Kind("how long the firmware's process stalls, s", 0, LONGEST_S, None),
 }
 
 
@@ -223,7 +223,7 @@ class Scenario:
 
 @dataclass(frozen=True)
 class Occurrence:
-    """A fault as it is drawn for one walk."""
+    """A fault drawn for one walk."""
 
     kind: str
     strength: float
@@ -247,10 +247,10 @@ def draw(fault: Fault, random: np.random.Generator) -> Occurrence:
 
 
 class Line:
-    """The way of frames to the firmware, and what happens to them there. One seed: the same."""
+    """The path of frames to the firmware, with its faults. Deterministic for a seed."""
 
     def __init__(self, occurrences: Sequence[Occurrence], random: np.random.Generator) -> None:
-        self.onset_s = math.inf  # when something first happened to a frame
+        self.onset_s = math.inf  # when a frame was first affected
         self._waiting: list[Arrival] = []
         self._sent = itertools.count()
         self._disturbances = [
@@ -272,7 +272,7 @@ class Line:
             heapq.heappush(self._waiting, replace(arrival, order=next(self._sent)))
 
     def due(self, time_s: float) -> list[Arrival]:
-        """What gets there by then, in the order in which it does."""
+        """What arrives by then, in order of arrival."""
         arrivals = []
         while self._waiting and self._waiting[0].time_s <= time_s:
             arrivals.append(heapq.heappop(self._waiting))
@@ -280,7 +280,7 @@ class Line:
 
 
 def read_scenario(path: Path) -> Scenario:
-    """Raises UserError naming the file, the table, the key and what would be right."""
+    """Raises UserError naming the file, the table, the key and what is accepted."""
     top = _Table(str(path), read_toml(path), {"walk", "fault"})
     walk = _Table(f"{path}: [walk]", top.get("walk", {}), {"speed_m_s", "duration_s"})
     faults = top.get("fault", [])
@@ -327,7 +327,7 @@ class _Table:
         if not isinstance(table, dict):
             raise UserError(f"{where}: must be a table")
         for name in table.keys() - keys:
-            raise UserError(f"{where}: {name} is none of {', '.join(sorted(keys))}")
+            raise UserError(f"{where}: {name} is not one of {', '.join(sorted(keys))}")
         self._where, self._table = where, table
 
     def get(self, name: str, default: Any) -> Any:

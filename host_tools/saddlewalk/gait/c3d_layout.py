@@ -1,4 +1,4 @@
-"""What a C3D file says of its own size, checked before a reader allocates memory for it.
+"""The size that a C3D file states, checked before a reader allocates memory for it.
 
 The header and the parameter section hold counts and lengths that a damaged file can have wrong by
 orders of magnitude. Each is compared with the bytes that are there. Lengths and offsets are in the
@@ -15,7 +15,7 @@ from saddlewalk.errors import UserError
 BLOCK = 512  # bytes
 KEY = 0x50
 BYTE_ORDERS = {84: "<", 85: "<", 86: ">"}  # Intel, DEC, SGI/MIPS
-SCALE_SIGN_BYTE = {84: 15, 85: 13, 86: 12}  # of the header: its top bit says that data are floats
+SCALE_SIGN_BYTE = {84: 15, 85: 13, 86: 12}  # of the header: its top bit: data are floats
 ELEMENT_BYTES = {-1: 1, 1: 1, 2: 2, 4: 4}  # by type: characters, bytes, integers, floats
 MOST_DIMENSIONS = 7
 MOST_EMPTY = 0xFFFF  # elements of no length, such as 40 empty descriptions
@@ -108,7 +108,7 @@ def _parameter(data: bytes, at: int, end: int, order: str, name: str) -> tuple[i
 
 
 def _check_frames(data: bytes, processor: int, counts: Counts) -> None:
-    """Points and frames against the data section, as the least of what the file says of them."""
+    """Points and frames against the data section, as the smallest that the file states."""
     points, analogs, first, last = struct.unpack_from(BYTE_ORDERS[processor] + "4H", data, 2)
     (start,) = struct.unpack_from(BYTE_ORDERS[processor] + "H", data, 16)
     if not 2 * BLOCK <= BLOCK * (start - 1) < len(data):

@@ -1,4 +1,4 @@
-"""A person's gait model from recorded walks: fields of saddle_config_t and how well they are known.
+"""A person's gait model from recorded walks: fields of saddle_config_t with the quality of the fit.
 
 With several speeds the regressions are the person's; with one, the paper's slopes are kept and the
 offsets fitted. Every recording counts at its own mean speed, with a weight of its steps.
@@ -35,7 +35,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class _Samples:
-    """One quantity of every step that tells it."""
+    """One quantity, of every step in which it was measured."""
 
     speed_m_s: np.ndarray
     value: np.ndarray
@@ -85,7 +85,7 @@ def fields_of(fits: Sequence[Fit]) -> dict[str, float]:
 
 
 def checked(fits: Sequence[Fit]) -> Any:
-    """The saddle_config_t of the fits. Raises UserError naming the field that the core refuses."""
+    """The saddle_config_t of the fits. Raises UserError naming the field that the core rejects."""
     from saddlewalk.core import describe_bad_field, ffi, library
 
     config = configuration(fields_of(fits))

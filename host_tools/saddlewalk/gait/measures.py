@@ -35,7 +35,7 @@ HEEL_HEIGHT_M = (-0.03, 0.15)  # of a heel marker while the foot lies flat
 
 @dataclass(frozen=True)
 class WalkMeasures:
-    """One recording. Arrays have one value a step and are empty where it does not tell."""
+    """One recording. Arrays have one value per step and are empty if not measured."""
 
     source: str
     speed_m_s: float
@@ -46,7 +46,7 @@ class WalkMeasures:
     lateral_m: np.ndarray  # of the sway, as far as it is largest beside the stance foot
     com_top_m: np.ndarray  # greatest height
     half_foot_m: np.ndarray  # one a placement: heel to middle of the metatarsus, halved
-    missing: dict[str, str]  # quantity -> why the recording does not tell it
+    missing: dict[str, str]  # quantity -> why it could not be measured
 
 
 def measure(recording: Recording) -> WalkMeasures:
@@ -84,7 +84,7 @@ def refuse(source: str, quantity: str, value: float) -> None:
 
 
 def out_of_range(quantity: str, value: float) -> str:
-    """What to say of a value that no human walk has; empty for one that it may have."""
+    """The message for a value that is impossible for human gait; empty for a possible one."""
     low, high, unit = HUMAN[quantity]
     if low <= value <= high:
         return ""
@@ -97,7 +97,7 @@ def out_of_range(quantity: str, value: float) -> str:
 
 
 def implausible(recording: Recording, gait: Gait) -> list[str]:
-    """A line for what no human walk has, most often a unit, where any movement is taken."""
+    """A warning for each value that is impossible for human gait, usually due to a wrong unit."""
     means = (
         ("walking speed", gait.speed_m_s),
         ("step length", gait.step_length_m),
@@ -112,7 +112,7 @@ def implausible(recording: Recording, gait: Gait) -> list[str]:
 
 
 def _reject_implausible(measures: WalkMeasures, reasons: list[str]) -> None:
-    """A speed that is not human is most often a unit, and makes all else look strange."""
+    """An impossible speed usually comes from a wrong unit, and affects all other values."""
     if np.isnan(measures.speed_m_s):
         raise UserError(f"{measures.source}: no walk: fewer than two heel strikes along +x")
     speed = out_of_range("walking speed", measures.speed_m_s)

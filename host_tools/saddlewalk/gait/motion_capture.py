@@ -222,7 +222,9 @@ def _axes(source: str, com_m: np.ndarray, heel_m: np.ndarray, toe_m: np.ndarray)
         feet_m = (toe_m - heel_m)[np.isfinite(toe_m - heel_m).all(axis=2)]
         forward = _horizontal(feet_m.mean(axis=0), up) if len(feet_m) else np.zeros(3)
     if not np.linalg.norm(forward) > 0:
-        raise UserError(f"{source}: no way to tell forward: the pelvis stays and no toe is seen")
+        raise UserError(
+            f"{source}: the forward direction is unknown: the pelvis stays and no toe is visible"
+        )
     forward /= np.linalg.norm(forward)
     return np.stack([forward, np.cross(up, forward), up])
 

@@ -75,7 +75,7 @@ def play_lockstep(
             raise UserError(
                 f"the firmware did not answer the measurements at {time_s:.2f} s in "
                 f"{ANSWER_TIMEOUT_S:g} s: {reader.receiver.accepted} frames came whole, "
-                f"{reader.receiver.rejected} were refused"
+                f"{reader.receiver.rejected} were rejected"
             )
         yield time_s, scores_of(messages)
 

@@ -1,4 +1,4 @@
-"""What the firmware said of a replayed walk, as rows of a table and as lines."""
+"""The firmware's scores of a replayed walk, as table rows and as lines."""
 
 import math
 

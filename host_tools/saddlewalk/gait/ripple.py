@@ -1,4 +1,4 @@
-"""How evenly a recorded walker carries the CoM: what the core learns of it, [E32]."""
+"""The ripple of a recorded walker's CoM velocity, as the core learns it, [E32]."""
 
 import math
 
@@ -10,7 +10,7 @@ from saddlewalk.gait.recording import Recording
 from saddlewalk.gait.states import state_at
 from saddlewalk.recorded_states import measurement_of, recording_core
 
-SHORTEST_S = 1.0  # of a recording that tells it: about two steps
+SHORTEST_S = 1.0  # of a usable recording: about two steps
 
 
 def learned_ripple(recording: Recording) -> float:

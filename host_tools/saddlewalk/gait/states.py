@@ -32,7 +32,7 @@ def read_measurements(
 ) -> Iterator[tuple[float, Measurement]]:
     """(time, what was measured) of each row or frame of a recording, or of a table of LAYOUTS.
 
-    `note` is told what was assumed or looks strange. Raises UserError naming the file and what is
+    `note` is called with assumptions and warnings. Raises UserError naming the file and what is
     wrong in it.
     """
     if Path(source).suffix.lower() in READERS:
@@ -66,7 +66,7 @@ def _recorded(
 
 
 def state_at(recording: Recording, contact: np.ndarray, index: int, time_s: float) -> State:
-    """A sample of the recording, said to be at time_s."""
+    """A sample of the recording, as the state at time_s."""
     com_m, velocity_m_s = recording.com_m[index], recording.com_velocity_m_s[index]
     left_m, right_m = recording.cop_m[:, index]
     numbers = (time_s, *com_m, *velocity_m_s[:2], *left_m, *right_m, *contact[:, index])

@@ -29,7 +29,7 @@ FEWEST = 2
 def unsteady(
     recording: Recording, events: tuple[FootEvents, FootEvents], placed: list[Placement]
 ) -> list[str]:
-    """What makes it another movement, each with its number and limit; empty for a steady walk."""
+    """Reasons why it is not a steady walk, with numbers and limits; empty if it is."""
     return [
         *_airborne(recording),
         *_turning(recording),
@@ -56,7 +56,7 @@ def _airborne(recording: Recording) -> Iterator[str]:
 
 
 def _turning(recording: Recording) -> Iterator[str]:
-    """Chords of CHORD_M of the CoM's path; a shorter path tells no turn."""
+    """Chords of CHORD_M of the CoM's path; a shorter path has no direction."""
     path_m = recording.com_m[np.isfinite(recording.com_m[:, :2]).all(axis=1), :2]
     headings_rad, end = [], 0
     for start in range(len(path_m)):
@@ -69,11 +69,11 @@ def _turning(recording: Recording) -> Iterator[str]:
         return
     turn_deg = float(np.degrees(np.ptp(np.unwrap(headings_rad))))
     if turn_deg > TURN_DEG:
-        yield f"the way turns by {turn_deg:.0f} degrees (at most {TURN_DEG:g})"
+        yield f"the path turns by {turn_deg:.0f} degrees (at most {TURN_DEG:g})"
 
 
 def _askew(recording: Recording, placed: list[Placement]) -> Iterator[str]:
-    """The way that is walked is x. One point a foot tells no direction."""
+    """The walk goes along x. A foot with one point has no direction."""
     feet_m = np.array(
         [
             np.median((recording.toe_m - recording.heel_m)[p.side, p.first : p.end, :2], axis=0)
@@ -83,7 +83,7 @@ def _askew(recording: Recording, placed: list[Placement]) -> Iterator[str]:
     angles_deg = np.degrees(np.abs(np.arctan2(feet_m[:, 1], feet_m[:, 0])))
     if len(angles_deg) and np.median(angles_deg) > ASKEW_DEG:
         yield (
-            f"the feet point {np.median(angles_deg):.0f} degrees off x, the way forward "
+            f"the feet point {np.median(angles_deg):.0f} degrees off x, the forward direction "
             f"(at most {ASKEW_DEG:g})"
         )
 

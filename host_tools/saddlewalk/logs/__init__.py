@@ -1,1 +1,1 @@
-"""Logs of a walk: written, read, tabulated and computed again."""
+"""Logs of a walk: written, read, tabulated and recomputed."""

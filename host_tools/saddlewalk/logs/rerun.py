@@ -1,9 +1,9 @@
-"""Logged runs computed again from their inputs, and each of their outputs compared, bit for bit.
+"""Logged runs recomputed from their inputs, and each of their outputs compared, bit for bit.
 
 An LCM log holds all that a run was given: SADDLEWALK_CONFIG, and with each tick SADDLEWALK_INPUT.
-So it can be computed again on any machine, whatever its clock was. A CAN log holds the frames that
+So it can be recomputed on any machine, whatever its clock was. A CAN log holds the frames that
 came. That is all that a run in lockstep was given, but for its configuration; in real time the
-ages of the measurements, and commands by LCM, were inputs too, of which no frame tells.
+ages of the measurements, and commands by LCM, were inputs too, which are in no frame.
 """
 
 import struct
@@ -19,7 +19,7 @@ from saddlewalk.firmware import Firmware, default_config, ffi, library
 from saddlewalk.logs.messages import decode
 from saddlewalk.transport.lcm_log import Event
 
-GAPS_MAX = 20  # told one by one
+GAPS_MAX = 20  # listed one by one
 # Channels that firmware before them did not have: a log without any of it is whole all the same.
 ADDED_CHANNELS = {"SADDLEWALK_BALANCE"}
 HEALTH_FIELDS = ("tick", "status", "limits", "faults")  # the core's; the others are the host's
@@ -44,7 +44,7 @@ class Difference:
 
 @dataclass
 class Report:
-    """What was computed again, the first difference, and in words what could not be compared."""
+    """What was recomputed, the first difference, and what could not be compared."""
 
     source: str = ""
     runs: int = 0
@@ -59,7 +59,7 @@ class Report:
 
     @property
     def not_compared(self) -> list[str]:
-        """In words, what of the log could not be compared; empty: nothing."""
+        """What of the log could not be compared, as text."""
         further = [f"{self.further_gaps} further gaps"] if self.further_gaps else []
         lost = (
             f"{name} of {lack.ticks} ticks is not in the log, the first time of tick {lack.first}"
@@ -69,7 +69,7 @@ class Report:
 
     @property
     def sound(self) -> bool:
-        """Every recorded output was computed again and is the same."""
+        """Every recorded output was recomputed and is the same."""
         return self.first is None and not self.not_compared
 
     def differs(self, difference: Difference) -> None:
@@ -117,7 +117,7 @@ def rerun_lcm(events: Iterable[Event]) -> Report:
         raise UserError(
             rerun.report.gaps[0]
             if rerun.report.gaps
-            else "nothing came on SADDLEWALK_INPUT, from which a run is computed again: it was "
+            else "nothing came on SADDLEWALK_INPUT, from which a run is recomputed: it was "
             "logged without that channel, or by a firmware that did not publish it"
         )
     return rerun.report
@@ -179,7 +179,7 @@ class _LcmRerun:
             self._compute(self._firmware, tick)
 
     def end_run(self) -> None:
-        """Tell what of the run could not be computed."""
+        """Report what of the run could not be computed."""
         if self._why:
             self.report.lacks(
                 f"{self._why}: ticks {self._first_unknown} to {self._last} cannot be computed"
@@ -262,7 +262,7 @@ def _fields(config: Any) -> list[tuple[str, float]]:
 
 
 def _core_config(message: Any) -> Any:
-    """A config_t as saddle_config_t. Raises UserError unless it has the very fields of this one."""
+    """A config_t as saddle_config_t. Raises UserError if its fields are not this version's."""
     config = default_config()
     fields = dict(_fields(message))
     known = {name for name, _ in ffi().typeof(config).item.fields}

@@ -1,4 +1,4 @@
-"""A CAN log of a run in lockstep computed again: from frames to frames, bit for bit.
+"""A CAN log of a run in lockstep recomputed: from frames to frames, bit for bit.
 
 The log must begin with the host process. Of HEALTH, LATE_TICKS and REJECTED_FRAMES count what no
 log shows, and are taken as they were recorded.
@@ -59,7 +59,7 @@ def _nothing(report: Report, node: "_Node") -> str:
     if report.gaps:
         return report.gaps[0]
     if node.inputs == 0:
-        return f"it has none of the frames {', '.join(_INPUTS)} of which a run is computed again"
+        return f"it has none of the frames {', '.join(_INPUTS)} of which a run is recomputed"
     return "it has no whole set of measurements with the HEALTH that answers it"
 
 
@@ -122,7 +122,7 @@ class _Node:
 
 
 def _compare(report: Report, node: _Node, answer: dict[str, bytes]) -> bool:
-    """One tick's frames. False: what follows cannot be computed, which the report then says."""
+    """One tick's frames. False: what follows cannot be computed, which the report then states."""
     tick = node.ticks - 1
     recorded = wire.raw_signals(wire.identifier("HEALTH"), answer["HEALTH"])
     if not _in_lockstep(report, node, recorded["COUNTER"]):

@@ -1,4 +1,4 @@
-"""Whether a walk was sound, and if not why: what the demo says at its end."""
+"""Checks of a walk that the demo prints at its end."""
 
 from collections import Counter
 from pathlib import Path
@@ -26,7 +26,7 @@ def walk_checks(wearer: Wearer, exoskeleton: Exoskeleton, stops: bool) -> list[C
 
 
 def _fall(time_s: float, exoskeleton: Exoskeleton) -> str:
-    """With the computer's part in it: a wearer whose process stands still cannot step."""
+    """With the computer's stalls: a wearer whose process stalls cannot step."""
     punctuality = exoskeleton.punctuality
     stall = punctuality.stall_before(time_s) if punctuality else None
     if stall is None:
@@ -54,7 +54,7 @@ def transport_checks(exoskeleton: Exoskeleton, recorder: Recorder) -> list[Check
     return [
         (
             rejected == refused == 0,
-            f"{rejected} frames refused by the wearer, {refused} by firmware",
+            f"{rejected} frames rejected by the wearer, {refused} by the firmware",
         ),
         (late <= LATE_SHARE_MAX * ticks, f"{late} of {ticks} ticks late"),
         (recorder.rows == ticks > 0, f"{recorder.rows} rows of CSV"),
@@ -63,7 +63,7 @@ def transport_checks(exoskeleton: Exoskeleton, recorder: Recorder) -> list[Check
 
 
 def log_checks(recorder: Recorder, config: Any, by_can: bool) -> list[Check]:
-    """What LCM brought, and the firmware's walk computed again from the log that has its inputs."""
+    """What LCM brought, and the firmware's walk recomputed from the log that has its inputs."""
     channels = Counter(event.channel for event in LcmLog(recorder.lcm_path))
     expected = ["SADDLEWALK_TRUTH"] if by_can else CHANNELS
     missing = [name for name in expected if not channels[name]]
@@ -78,12 +78,12 @@ def log_checks(recorder: Recorder, config: Any, by_can: bool) -> list[Check]:
 
 
 def _rerun(log: Path, config: Any) -> Check:
-    """Whether the logged inputs give the logged outputs again; what a log lost is only told."""
+    """Whether the logged inputs reproduce the logged outputs; gaps of the log are only reported."""
     try:
         report = rerun_lcm(LcmLog(log)) if is_lcm_log(log) else rerun_can(CanLog(log), config)
     except UserError as error:
         return False, f"{log.name} cannot be rerun: {error}"
     if report.first:
         return False, f"rerun of the log: {report.first}"
-    words = f"{report.ticks} ticks computed again from the log: the same bits"
+    words = f"{report.ticks} ticks recomputed from the log: the same bits"
     return True, "; not compared: ".join([words, *report.not_compared])

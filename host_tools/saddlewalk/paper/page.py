@@ -181,7 +181,7 @@ def _people(trials: Sequence[Trial]) -> str:
 
 
 def _departures_table(trials: Sequence[Trial]) -> str:
-    """How far people are from the model, bias and RMSE over the trials that tell."""
+    """How far people are from the model: bias and RMSE over the trials with a measurement."""
     walking = [trial for trial in trials if gait(trial.speed_m_s).planned]
     model = [(gait(trial.speed_m_s), simulate(trial.speed_m_s)) for trial in walking]
     quantities: dict[str, Callable[[Any, Any, Any], float]] = {

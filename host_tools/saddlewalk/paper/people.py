@@ -16,7 +16,7 @@ MANIFEST = "manifest.csv"
 
 @dataclass(frozen=True)
 class Trial:
-    """What was measured in one recording. NaN where it does not tell."""
+    """Measurements of one recording. NaN: not measured."""
 
     name: str
     about: dict[str, str]  # its row of the manifest; empty without one
@@ -37,8 +37,8 @@ class Trial:
 def load_trials(folder: Path) -> list[Trial]:
     """Measure every trial (*.csv) of a folder, in order of speed.
 
-    manifest.csv, if there, has a row for each `file` and says in the columns dataset, licence,
-    group and note what it is; an empty step_width_m there: its width means nothing. Raises
+    manifest.csv, if there, has a row for each `file` with the columns dataset, licence,
+    group and note; an empty step_width_m there: its width means nothing. Raises
     UserError naming the folder, or the file that is no trial.
     """
     if not folder.is_dir():

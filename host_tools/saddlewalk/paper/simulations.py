@@ -34,7 +34,7 @@ def mean_body(ankle: str = "erf") -> Any:
 
 @dataclass(frozen=True)
 class Gait:
-    """What the gait model says at one speed."""
+    """The gait model at one speed."""
 
     half_step_m: float
     half_step_min_m: float  # XCoM limit

@@ -18,10 +18,10 @@ from saddlewalk.verdict import REASON_WORDS
 
 matplotlib.use("Agg")
 
-# Okabe and Ito's colours, which the colour-blind can tell apart; line styles differ as well.
+# Okabe and Ito's colours, which colour-blind people can distinguish; line styles differ as well.
 BLUE, SKY, GREEN, ORANGE, RED, PINK = "#0072B2 #56B4E9 #009E73 #E69F00 #D55E00 #CC79A7".split()
 BEFORE_S, AFTER_S = 1.2, 3.0  # the part of the walk shown closely, about the first push
-LYING_S = 0.5  # shown of a wearer who has fallen
+LYING_S = 0.5  # shown after a fall
 FOOT_M = (0.26, 0.09)
 MARGIN_SHOWN_M = -0.8  # during a fall it goes far below
 FEET = (("left", GREEN), ("right", RED))
@@ -37,7 +37,7 @@ LANES: dict[str, dict[str, Any]] = {
     "caution": {"facecolor": ORANGE, "hatch": "///"},
     "unstable": {"facecolor": RED, "hatch": "xxx"},
 }
-# What says nothing of a wearer who lies on the ground.
+# Not meaningful for a wearer on the ground.
 OF_A_POSTURE = (
     *("s_pend", "s_jump", "s_sw", "level", "margin", "caution_below"),
     *("true_com_vx_m_s", "true_com_z_m"),
@@ -231,7 +231,7 @@ def _draw_height(axes: Axes, walk: Columns) -> None:
 def _draw_lines(
     axes: Axes, walk: Columns, names: Sequence[tuple[str, str]], modes: bool = False
 ) -> None:
-    """Lines over the whole walk; modes: name the shades, which tell what the plan is doing."""
+    """Lines over the whole walk; modes: name the shades, which are the plan's modes."""
     styles = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."))
     for (name, label), (colour, style) in zip(names, styles, strict=False):
         axes.plot(walk["t_s"], walk[name], color=colour, ls=style, lw=1.6, label=label)

@@ -1,7 +1,7 @@
-"""A schedule of walking speeds, and the walk from standing that obeys it.
+"""A schedule of walking speeds, and the walk from standing that follows it.
 
 A schedule is a CSV file with the columns `t_s` (from 0, increasing) and `speed_m_s` (0: stand):
-each speed is wanted from its time on.
+each speed is commanded from its time on.
 """
 
 import math
@@ -19,7 +19,7 @@ LONGEST_S = 1e6
 _SAME_TIME_S = 1e-9
 
 Speeds = list[tuple[float, float]]  # (from this time on, s; speed, m/s, 0: stand), times from 0
-Schedule = Callable[[float], Command]  # what is asked for at a time of the walk, s
+Schedule = Callable[[float], Command]  # the command at a time of the walk, s
 
 
 def schedule_of(speeds: Speeds, heel_strike_rad: float) -> Schedule:
@@ -105,7 +105,7 @@ def walk(
 
 
 def _events(before: Any, after: Any) -> list[tuple[str, float]]:
-    """Events between two plans a tick apart, with the time to them that the first foretells."""
+    """Events between two plans a tick apart, with the time to them that the first predicts."""
     swung, swings = _swing_foot(before), _swing_foot(after)
     stepped_on = (before.mode, after.mode) == (STOPPING, STARTING)
     changed = swings != swung or stepped_on

@@ -1,4 +1,4 @@
-"""The page of a session: what was walked, the alarms, the steps, and what the data are worth."""
+"""The page of a session: the walk, the alarms, the steps, and the quality of the data."""
 
 import datetime
 import os
@@ -20,12 +20,12 @@ from saddlewalk.session.steps import QUANTITIES, Steps, Way, variability, walked
 TITLE = "Session report"
 LISTED = 200  # alarms, and gaps: the worst ones
 NO_DEVICE = (
-    "**Saddlewalk is no medical device.** It has not been certified or tried on patients, and this "
-    "page is no diagnosis: it tells what one log holds."
+    "**Saddlewalk is not a medical device.** It has not been certified or tested on patients, and "
+    "this page is not a diagnosis: it shows the content of one log."
 )
 NO_VERDICT = "no verdict"
 SILENT = "silent"
-NO_STEPS = "No step is seen in this run."
+NO_STEPS = "No step was detected in this run."
 UNKNOWN = "not known"
 
 _STEPS = """
@@ -35,13 +35,13 @@ the sample's, CV is SD by mean.
 """
 _MEASURED = """
 From the measured feet of SADDLEWALK_INPUT, seen once a tick: each step time is within 80 ms, so an
-SD of step time below about 33 ms is not told from that of the tick. Length and width are taken at
-the landing, as the scores take them; from footprint to footprint a step is longer by as much as the
-CoP of the other foot has moved forward by then.
+SD of step time below about 33 ms cannot be distinguished from the tick's. Length and width are
+taken at the landing, as for the scores; from footprint to footprint a step is longer by as much as
+the CoP of the other foot has moved forward by then.
 """
 _PLANNED = """
 **From the plan**, not from the person: the log holds no measurement of the feet. A person who does
-not follow the plan walks otherwise.
+not follow the plan walks differently.
 """
 _STEADY = "*Steady*: the plan was walking at one speed from one landing to the next."
 
@@ -61,7 +61,7 @@ def write_page(log: Path, session: Session) -> str:
             kind: html_page.picture(names[kind], each.caption) for kind, each in pictures.items()
         }
         sections += [
-            f"## In short\n\n{_in_short(run, way)}",
+            f"## Summary\n\n{_in_short(run, way)}",
             f"## Levels and alarms\n\n{shown['level']}\n\n{_levels(run)}\n\n{_alarms(run)}",
             f"## Scores\n\n{shown['scores']}",
             *(words for kind, words in shown.items() if kind.startswith("alarm")),
@@ -73,7 +73,7 @@ def write_page(log: Path, session: Session) -> str:
 
 
 def in_words(session: Session) -> Iterator[str]:
-    """A line a run."""
+    """A line per run."""
     for run in session.runs:
         way = walked(run)
         levels = ", ".join(f"{name} {held_s:.1f} s" for name, held_s in time_in_levels(run).items())
@@ -123,7 +123,9 @@ def _about(log: Path, session: Session) -> str:
         channels = ", ".join(
             f"{count} on {_plain(name)}" for name, count in session.unreadable.items()
         )
-        lines.append(f"Not read, being of no type that saddlewalk {__version__} has: {channels}.")
+        lines.append(
+            f"Not read, since saddlewalk {__version__} does not know their type: {channels}."
+        )
     return "\n\n".join(lines)
 
 
@@ -135,7 +137,7 @@ def _date(logged_us: int) -> str:
     return f"{date:%Y-%m-%d %H:%M:%S} UTC"
 
 
-_LYING = "scores, levels and steps from then on are of someone who lies on the ground"
+_LYING = "scores, levels and steps from then on are those of someone on the ground"
 
 
 def _in_short(run: Run, way: Way | None) -> str:
@@ -156,7 +158,7 @@ def _in_short(run: Run, way: Way | None) -> str:
     found = alarms(run)
     counts = {name: int((found.value == LEVELS.index(name)).sum()) for name in LEVELS}
     times = [f"{name} {counts[name]}" for name in ("unstable", "caution", "unknown")]
-    rows.append(["times that the level was", ", ".join(times) if run.has("verdict") else UNKNOWN])
+    rows.append(["episodes by level", ", ".join(times) if run.has("verdict") else UNKNOWN])
     return table(("what", "how much"), rows)
 
 
@@ -208,7 +210,7 @@ def _alarms(run: Run) -> str:
 
 
 def _not_listed(count: int, which: str) -> str:
-    """What a table of the first LISTED says below it if there are more."""
+    """The note below a table of the first LISTED if there are more."""
     return f"\n{LISTED} of {count} {which}." if count > LISTED else ""
 
 

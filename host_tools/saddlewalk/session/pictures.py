@@ -57,16 +57,16 @@ def draw(run: Run, way: Way | None, troubles: Sequence[Trouble]) -> dict[str, Pi
 
 _LEVEL = (
     "The margin that decides the level (a share of the CoM's usual height; 0 and below is red: "
-    "unstable), the level that was announced, and what decided it. Empty: no verdict came, or the "
+    "unstable), the announced level, and what decided it. Empty: no verdict, or the "
     "firmware was silent."
 )
 _SCORES = (
     "The margin that decides the level; speed; scores (1: the reference, 0: the limit); margins in "
     "the base of support and the reach that a recovery step has left (negative: outside, or "
     "lacking); energy beyond that of standing still and beyond the plan's. Shaded: the alarms, "
-    "caution lightly and unstable darkly. What lies far beyond is cut off."
+    "caution lightly and unstable darkly. Values far outside are cut off."
 )
-_ALARM = "The same closely: {} from {:.2f} s."
+_ALARM = "Detail: {} from {:.2f} s."
 _STEPS = "Each step, {}, by the foot that landed."
 _TROUBLES = "When each fault and limit was reported."
 

@@ -1,4 +1,4 @@
-"""What a run's data are worth: lost ticks, faults, ages, refused frames, missing channels."""
+"""Quality of a run's data: lost ticks, faults, ages, rejected frames, missing channels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,38 +18,38 @@ AGES = {
 }
 LACKS = {
     "verdict": "levels, alarms, energies and the recovery step are not known",
-    "balance": "the margin that decides the level, and what drives it, is not known",
+    "balance": "the margin that decides the level and its driver are not known",
     "scores": "S_pend, S_jump, S_SW and the margins are not known",
-    "plan": "the planned speed is not known, nor which steps were steady",
-    "input": "what was measured, and how old it was, is not known",
+    "plan": "the planned speed and which steps were steady are not known",
+    "input": "measurements and their ages are not known",
     "health": "faults, limits and late ticks are not known",
-    "status": "how the firmware kept its time, and what it refused, is known less closely",
+    "status": "details of timing and of rejected frames are not known",
     "config": "configuration and versions are not known",
 }
 FAULT_WORDS = {
-    "COMMAND": "a command that cannot be used",
+    "COMMAND": "an unusable command",
     "COM_STALE": "the CoM's measurement is too old",
-    "COM_RANGE": "the CoM's measurement is not finite or absurd",
+    "COM_RANGE": "the CoM's measurement is not finite or out of range",
     "LEFT_STALE": "the left foot's measurement is too old",
-    "LEFT_RANGE": "the left foot's measurement is not finite or absurd",
+    "LEFT_RANGE": "the left foot's measurement is not finite or out of range",
     "RIGHT_STALE": "the right foot's measurement is too old",
-    "RIGHT_RANGE": "the right foot's measurement is not finite or absurd",
-    "FEET_TOGETHER": "the feet are at one place",
+    "RIGHT_RANGE": "the right foot's measurement is not finite or out of range",
+    "FEET_TOGETHER": "the feet are at the same place",
     "SPEED_INFEASIBLE": "this body cannot walk at the measured speed",
     "COM_FROZEN": "the CoM's measurement stays the same while the feet move",
     "LEFT_FROZEN": "the left foot's measurement stays the same while the CoM moves",
     "RIGHT_FROZEN": "the right foot's measurement stays the same while the CoM moves",
     "AIRBORNE": "both feet are in the air for too long",
     "FEET_CROSSED": "the feet are crossed",
-    "COMMAND_STALE": "no command that can be used came for too long",
+    "COMMAND_STALE": "no usable command for too long",
     "COM_LOW": "the CoM is below the knees",
 }
 LIMIT_WORDS = {
-    "SPEED": "the commanded speed is not feasible: the nearest that is was planned",
+    "SPEED": "the commanded speed is not feasible: the nearest feasible one was planned",
     "HEEL_STRIKE": "the commanded heel-strike angle is out of range",
     "TOE_OFF": "the ankle's angle is outside the geometry",
-    "FEET": "no plan can start or go on from the measured feet",
-    "TICK_GAP": "a late tick: the plan advanced less than time did",
+    "FEET": "no plan can start or continue from the measured feet",
+    "TICK_GAP": "a late tick: the plan advanced by less than the elapsed time",
     "SAFE_STOP": "inputs were lost: the plan ended the walk",
 }
 
@@ -89,16 +89,16 @@ class Gaps:
 
 
 def missing(run: Run) -> list[str]:
-    """In words, each channel of the firmware that the log does not hold, and what it would tell."""
+    """A sentence for each channel that the log lacks, with what is therefore unknown."""
     return [
-        f"Nothing that can be read came on SADDLEWALK_{name.upper()}: {lack}."
+        f"Nothing readable was received on SADDLEWALK_{name.upper()}: {lack}."
         for name, lack in LACKS.items()
         if not run.has(name)
     ]
 
 
 def troubles(run: Run) -> list[Trouble]:
-    """Faults, limits and errors that were told, by kind."""
+    """Reported faults, limits and errors, by kind."""
     found = [
         *_bits(run, "faults", FAULTS, FAULT_WORDS),
         *_bits(run, "limits", LIMITS, LIMIT_WORDS),
@@ -111,7 +111,7 @@ def troubles(run: Run) -> list[Trouble]:
 
 
 def gaps(run: Run, most: int) -> Gaps:
-    """Where ticks are missing, and whether the log or the firmware left them out."""
+    """Where ticks are missing, and whether the log or the firmware lost them."""
     after_s = np.diff(run.time_s)
     found = np.flatnonzero(after_s > GAP_S)
     duration_s = after_s[found] - TICK_S
@@ -122,10 +122,10 @@ def gaps(run: Run, most: int) -> Gaps:
 def _gap(run: Run, index: int) -> Gap:
     """Behind a tick."""
     before, after = run.number(index), run.number(index + 1)
-    words = "no message tells why"
+    words = "cause not logged"
     if before is not None and after is not None:
         lost = after - before - 1
-        words = f"{lost} ticks are not in the log" if lost else "the firmware left ticks out"
+        words = f"{lost} ticks are not in the log" if lost else "the firmware missed ticks"
     start_s = float(run.time_s[index]) + TICK_S
     return Gap(start_s, float(run.time_s[index + 1]) - start_s, words)
 
@@ -136,25 +136,25 @@ def ages(run: Run) -> list[Age]:
 
 
 def rejected(run: Run) -> str:
-    """Frames accepted and refused since the firmware's start, and why; empty if nothing tells."""
+    """Frames accepted and rejected since the firmware's start, by reason; empty if not logged."""
     status, health = run.last("status"), run.last("health")
     counters = status or health
     if counters is None:
         return ""
     counts = [
         f"{getattr(counters, member)} {words}"
-        for words, member in status_text.REFUSED.items()
+        for words, member in status_text.REJECTED.items()
         if getattr(counters, member, 0)
     ]
-    return f"{counters.frames_accepted} frames accepted, refused: {', '.join(counts) or 'none'}"
+    return f"{counters.frames_accepted} frames accepted, rejected: {', '.join(counts) or 'none'}"
 
 
 def late(run: Run) -> str:
-    """How the firmware kept its time, since its start; empty if nothing tells."""
+    """Timing of the firmware since its start; empty if not logged."""
     status, health = run.last("status"), run.last("health")
     if status:
         return (
-            f"{status.late_ticks} ticks late, {status.missed_ticks} left out; at most "
+            f"{status.late_ticks} ticks late, {status.missed_ticks} missed; at most "
             f"{status.latency_max_us / 1000:.2f} ms latency and {status.work_max_us / 1000:.2f} ms "
             "work"
         )

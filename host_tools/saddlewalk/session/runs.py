@@ -21,7 +21,7 @@ from saddlewalk.transport.lcm_log import LcmLog
 from saddlewalk.verdict import reason_words
 
 FIRMWARE = tuple("config input plan scores verdict balance bos health status".split())
-NUMBERED = ("health", "status", "input")  # messages that tell their tick's number
+NUMBERED = ("health", "status", "input")  # messages with the number of their tick
 NO_NUMBER = -(2**31)
 RUNS_MAX = 20  # more are two firmware processes that were logged at once
 BLOCK = 4096  # messages of a channel that are held as they came
@@ -187,7 +187,7 @@ class Run:
         return float(self.time_s[-1]) + TICK_S
 
     def number(self, tick: int) -> int | None:
-        """From 0 at the start of the firmware; None if no message tells."""
+        """From 0 at the start of the firmware; None if not logged."""
         number = self.numbers[tick]
         return None if number == NO_NUMBER else number
 

@@ -73,7 +73,7 @@ def variability(values: Sequence[float]) -> Variability:
 
 
 def walked(run: Run) -> Way | None:
-    """As measured if that tells of the feet, else as planned; None if neither was logged."""
+    """As measured if the feet were, else as planned; None if neither was logged."""
     if any(_known(run, side).any() for side in SIDES):
         return _measured(run)
     return _planned(run) if run.has("plan") else None

@@ -56,7 +56,7 @@ class Authenticator:
         self._freshness = 0
 
     def hear(self, frame: can.Message) -> None:
-        """Take note of the session; anything else is passed over."""
+        """Remember the session; other frames are ignored."""
         if frame.arbitration_id != identifier("SESSION"):
             return
         accepted = self._receiver.accept(frame)

@@ -2,8 +2,8 @@
 
 The datagrams are those of python-can's `udp_multicast`, so its tools understand them; this bus adds
 what that one lacks. It stays on the loopback interface, with hop limit 0, and so needs no route and
-no root; `@INTERFACE` after the port makes it leave this machine. A node does not hear its own
-frames. Junk datagrams are counted, not raised.
+no root; `@INTERFACE` after the port makes it leave this machine. A node does not receive its own
+frames. Invalid datagrams are counted, not raised.
 python-can's own programs find it as `can_logger -i saddlewalk_udp`.
 """
 
@@ -131,10 +131,10 @@ def _membership(group: str, interface: tuple[str, int]) -> bytes:
 
 
 def _receiving_socket(address: tuple[str, int], interface: tuple[str, int]) -> socket.socket:
-    """Bound to the group: a socket bound to any address also hears the port's other groups.
+    """Bound to the group: a socket bound to any address also receives the port's other groups.
 
-    And heard on that interface alone: by default a group that anyone joined elsewhere is heard
-    from there too.
+    And received on that interface only: by default a group that any process joined on another
+    interface is received from there too.
     """
     udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     udp.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -147,7 +147,7 @@ def _receiving_socket(address: tuple[str, int], interface: tuple[str, int]) -> s
 
 
 def _sending_socket(interface: tuple[str, int], hops: int) -> socket.socket:
-    """Its own port tells this node's frames from all others."""
+    """Its own port identifies this node's frames."""
     udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     udp.setblocking(False)
     udp.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, hops)
@@ -204,12 +204,12 @@ def open_bus(spec: str = "auto") -> can.BusABC:
 
 
 def private_udp() -> str:
-    """The spec of a UDP bus on a port that nobody uses now."""
+    """The spec of a UDP bus on an unused port."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("", 0))
         return f"udp:{DEFAULT_GROUP}:{probe.getsockname()[1]}"
 
 
 def describe(bus: can.BusABC) -> str:
-    """What the bus is, for people: its kind and its channel."""
+    """Kind and channel of a bus, as text."""
     return str(bus.channel_info)

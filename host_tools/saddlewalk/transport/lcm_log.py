@@ -57,13 +57,15 @@ class LcmLog:
     def __init__(self, path: Path) -> None:
         """Raises UserError for what is not an LCM log, or holds not one event."""
         if not is_lcm_log(path):
-            raise UserError(f"{path} is no LCM log: give one of lcm-logger or of `saddlewalk demo`")
+            raise UserError(
+                f"{path} is not an LCM log: give one from lcm-logger or `saddlewalk demo`"
+            )
         self.path = path
         self.events = 0  # read so far, as are all of these
         self.lost = 0  # bytes that are no event
         self._first_lost = 0
         if next(iter(self), None) is None:
-            raise UserError(f"{path}: not one event of it can be read: {self.broken}")
+            raise UserError(f"{path}: none of its events can be read: {self.broken}")
 
     @property
     def broken(self) -> str:
@@ -71,7 +73,7 @@ class LcmLog:
         if not self.lost:
             return ""
         return (
-            f"{self.lost} bytes of the log are no event, as where one was cut or damaged; "
+            f"{self.lost} bytes of the log are not an event, as where one was cut or damaged; "
             f"the first is byte {self._first_lost}"
         )
 

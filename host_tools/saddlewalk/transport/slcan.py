@@ -20,7 +20,7 @@ _HEADER = 5  # characters of tIIIL
 
 
 class SlcanBus(can.BusABC):
-    """A connected socket with a controller at its other end, which this bus closes.
+    """A connected socket with a controller at the other end, which this bus closes.
 
     `malformed` counts lines that were no classic data frame with an 11-bit identifier.
     """
@@ -34,7 +34,7 @@ class SlcanBus(can.BusABC):
         super().__init__(channel=description)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
-        """Raises UserError if nobody is there any more."""
+        """Raises UserError if the other end has closed."""
         try:
             self._line.sendall(text_of(msg))
         except OSError as error:

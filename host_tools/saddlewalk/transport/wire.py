@@ -155,7 +155,7 @@ class _Alive:
 
 @dataclass
 class Receiver:
-    """Judges frames by the rules of `saddle_wire_accept()`, for every message of the database."""
+    """Checks frames by the rules of `saddle_wire_accept()`, for every message of the database."""
 
     accepted: int = 0
     malformed: int = 0  # not a classic 8-byte data frame, or an identifier not in the database
@@ -169,7 +169,7 @@ class Receiver:
         return self.malformed + self.bad_crc + self.bad_version + self.bad_counter
 
     def accept(self, frame: can.Message) -> tuple[str, dict[str, float]] | None:
-        """(message name, its signals but the CRC), or None if the frame is refused, and counted.
+        """(message name, its signals but the CRC), or None for a rejected frame, which is counted.
 
         A number that is not available is NaN.
         """
@@ -199,12 +199,12 @@ class Receiver:
 
 
 def raw_signals(identifier: int, data: bytes) -> dict[str, int]:
-    """All signals of a frame as they are on the wire, CRC and COUNTER too, whatever they say."""
+    """All signals of a frame as they are on the wire, CRC and COUNTER included, without checks."""
     return _by_id[identifier].raw(data)
 
 
 def signals(frame: can.Message) -> dict[str, float]:
-    """All signals but the CRC of a frame of ours, whatever its CRC and its counter say."""
+    """All signals but the CRC of a frame of ours, without checks."""
     return _by_id[frame.arbitration_id].decode(frame.data)
 
 

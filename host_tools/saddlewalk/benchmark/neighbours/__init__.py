@@ -2,4 +2,4 @@
 
 
 class MissingError(Exception):
-    """A neighbour that is not here, or that finds no plan; the text says why."""
+    """A planner that is not installed, or finds no plan; the text gives the reason."""

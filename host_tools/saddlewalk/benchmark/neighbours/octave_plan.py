@@ -63,15 +63,15 @@ class Octave:
 
     def _set_walk(self, speed_m_s: float, heel_strike_rad: float, t_s: Sequence[float]) -> None:
         times = " ".join(f"{t:.17g}" for t in t_s)
-        self._tell(f"speed = {speed_m_s}; heel_strike = {heel_strike_rad}; t = [{times}];")
+        self._send(f"speed = {speed_m_s}; heel_strike = {heel_strike_rad}; t = [{times}];")
 
-    def _tell(self, statement: str) -> None:
+    def _send(self, statement: str) -> None:
         assert self._process.stdin
         self._process.stdin.write(f"{statement}\n")
 
     def _ask(self, statement: str) -> str:
         """The line that the statement prints."""
-        self._tell(f"{statement}; printf('\\n'); fflush(stdout);")
+        self._send(f"{statement}; printf('\\n'); fflush(stdout);")
         assert self._process.stdin and self._process.stdout
         self._process.stdin.flush()
         line = self._process.stdout.readline()
