@@ -58,8 +58,8 @@ def complaints(message: Message) -> Iterator[str]:
     if places.get("CRC") != (0, 8) or places.get("COUNTER") != (8, 4):
         yield f"{message.name} must begin with CRC, 0|8, and COUNTER, 8|4"
     for signal in message.signals:
-        if said := complaint(signal):
-            yield f"{message.name}.{signal.name} {said}"
+        if problem := complaint(signal):
+            yield f"{message.name}.{signal.name} {problem}"
 
 
 def crc_of(byte: int) -> int:
@@ -101,8 +101,8 @@ def header(messages: list[Message]) -> Iterator[str]:
 def main() -> None:
     dbc, out = map(Path, sys.argv[1:])
     messages = cantools.database.load_file(dbc).messages
-    if wrong := [said for message in messages for said in complaints(message)]:
-        sys.exit("\n".join(f"{dbc}: {said}" for said in wrong))
+    if wrong := [text for message in messages for text in complaints(message)]:
+        sys.exit("\n".join(f"{dbc}: {text}" for text in wrong))
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text("\n".join(header(messages)) + "\n")
 

@@ -1,5 +1,5 @@
 /* saddlewalk-bench-updates: each update of each walk, and then its floor, whose calls are read from
- * standard input as saddlewalk-bench-calls tells them. Prints a line for each: walk, update, status,
+ * standard input as saddlewalk-bench-calls prints them. Prints a line for each: walk, update, status,
  * mode, level, faults. Callgrind counts saddle_init(), saddle_bench_update() or
  * saddle_bench_floor(). */
 #include "floor.h"

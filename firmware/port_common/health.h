@@ -1,4 +1,4 @@
-/** How the firmware fares, as the wire tells it: TIMING, RECEIVED, INPUTS and HEALTH. */
+/** The firmware's health for the wire: TIMING, RECEIVED, INPUTS and HEALTH. */
 #ifndef SADDLEWALK_PORT_HEALTH_H
 #define SADDLEWALK_PORT_HEALTH_H
 

@@ -1,9 +1,9 @@
 /**
- * What the firmware was given: the newest command and measurement, when each part came, and
- * what was refused and why. Knows no bus and reads no clock.
+ * The firmware's inputs: the newest command and measurement, when each part was received, and
+ * what was rejected and why. Knows no bus and reads no clock.
  *
  * One source of commands has authority at a time. The commands of the other are counted, not
- * obeyed, even when the first falls silent: the plan then stops the walk.
+ * applied, even when the first goes silent: the plan then stops the walk.
  */
 #ifndef SADDLEWALK_PORT_INBOX_H
 #define SADDLEWALK_PORT_INBOX_H
@@ -19,42 +19,42 @@ typedef enum {
 } saddle_source_t;
 
 typedef struct {
-    saddle_source_t chosen;    /**< the only one to obey; NONE: see saddle_inbox_release() */
-    saddle_source_t authority; /**< the one that is obeyed now */
+    saddle_source_t chosen;    /**< the only one that may command; NONE: see saddle_inbox_release() */
+    saddle_source_t authority; /**< the source that commands now */
     saddle_input_t input;      /**< ages as of the last saddle_inbox_read() */
     saddle_wire_receiver_t receiver;
     uint64_t came_us[SADDLE_WIRE_MESSAGE_COUNT];
-    uint32_t came; /**< bits of the messages that ever came */
+    uint32_t came; /**< bits of the messages received so far */
     uint32_t set;  /**< bits of the messages with set_counter since the last read */
     uint8_t set_counter;
     uint32_t commands_obeyed;
-    uint32_t commands_unusable; /**< unknown mode, number not finite, or no LCM command at all */
+    uint32_t commands_unusable; /**< unknown mode, non-finite number, or not a command_t */
     uint32_t commands_ignored;  /**< of the source without authority */
-    uint32_t commands_foreign;  /**< by LCM from another machine, where those do not count */
+    uint32_t commands_foreign;  /**< by LCM from another machine, where that is not accepted */
 } saddle_inbox_t;
 
 /** Empty. chosen: see saddle_inbox_t. */
 void saddle_inbox_init(saddle_inbox_t *inbox, saddle_source_t chosen);
 
-/** Take a frame as it came from CAN at time_us. */
+/** Process a frame received from CAN at time_us. */
 void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *data,
                              size_t length, uint64_t time_us);
 
-/** Take a command; NULL: what came was none. One that cannot be used takes nobody's place. */
+/** Process a command; NULL: an invalid message. An unusable command does not gain authority. */
 void saddle_inbox_take_command(saddle_inbox_t *inbox, saddle_source_t source,
                                const saddle_command_t *command, uint64_t time_us);
 
-/** All three measurements of one instant have come since the last read. */
+/** All three measurements of one instant were received since the last read. */
 bool saddle_inbox_set_complete(const saddle_inbox_t *inbox);
 
 /** The input of a tick at time_us, with the age of each part then. */
 const saddle_input_t *saddle_inbox_read(saddle_inbox_t *inbox, uint64_t time_us);
 
-/** Where the first that commands has authority: let the other have it from now on if it is the
- *  first to command again. For when the walk has come to its end and nobody commands. */
+/** If the first source that commands has authority: release it for the next one that commands.
+ *  For use when the walk has ended and commands are stale. */
 void saddle_inbox_release(saddle_inbox_t *inbox);
 
-/** Frames and commands that came and were not used. */
+/** Rejected frames and commands. */
 uint32_t saddle_inbox_rejected(const saddle_inbox_t *inbox);
 
 #endif

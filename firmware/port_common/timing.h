@@ -1,4 +1,4 @@
-/** How well the ticks keep their time. */
+/** Timing of the ticks. */
 #ifndef SADDLEWALK_PORT_TIMING_H
 #define SADDLEWALK_PORT_TIMING_H
 
@@ -7,7 +7,7 @@
 /** From one tick to the next. */
 #define SADDLE_TICK_US 80000u
 
-/** Bin 0: woken within 2 us of the place of the tick on the grid; bin n: from 2^n us, below
+/** Bin 0: woken within 2 us of the tick's time on the grid; bin n: from 2^n us, below
  *  2^(n+1) us; the last: anything later. */
 #define SADDLE_LATENCY_BINS 17
 

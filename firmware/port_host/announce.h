@@ -1,11 +1,11 @@
-/** What the running process has to say to people. */
+/** Messages of the running process. */
 #ifndef SADDLEWALK_HOST_ANNOUNCE_H
 #define SADDLEWALK_HOST_ANNOUNCE_H
 
 #define SADDLE_PROGRAM "saddlewalk-host"
 
-/** One line on standard error, `saddlewalk-host: ` before it. Dropped rather than waited for if
- *  whoever reads it is behind: no tick waits for a reader. At most 400 characters are said. */
+/** One line on standard error, `saddlewalk-host: ` before it. Dropped if the
+ *  reader is behind: no tick waits for it. At most 400 characters. */
 #if defined __GNUC__
 __attribute__((format(printf, 1, 2)))
 #endif

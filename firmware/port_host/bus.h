@@ -1,8 +1,8 @@
 /**
- * CAN as the host sees it: SocketCAN or UDP multicast, on loopback unless told otherwise. Knows
- * neither the core nor what the frames mean. Nothing here blocks, and a node never hears its own
- * frames. A frame that finds no room is dropped, for the next tick brings a newer one; a link that
- * is lost is announced once and opened anew by saddle_bus_maintain().
+ * CAN as the host sees it: SocketCAN or UDP multicast, on loopback by default. Knows neither
+ * the core nor the meaning of frames. Nothing here blocks, and a node never receives its own
+ * frames. A frame that does not fit is dropped, since the next tick sends a newer one; a lost link
+ * is announced once and reopened by saddle_bus_maintain().
  */
 #ifndef SADDLEWALK_HOST_BUS_H
 #define SADDLEWALK_HOST_BUS_H
@@ -12,14 +12,14 @@
 /**
  * Open a bus. spec: `auto` (SocketCAN vcan0 if it is up, else `udp`), `socketcan:INTERFACE`, `udp`,
  * `udp:GROUP:PORT`, or `udp:GROUP:PORT@INTERFACE` to leave this machine by that interface. False:
- * not opened, and bus->description says in one line what is wrong and what would be right.
+ * not opened, and bus->description is one line with the problem and the remedy.
  */
 bool saddle_bus_open(saddle_bus_t *bus, const char *spec);
 
 /** Send or drop, and count which. */
 void saddle_bus_send(saddle_bus_t *bus, const saddle_bus_frame_t *frame);
 
-/** Take what came next. frame is written only with SADDLE_BUS_FRAME. */
+/** Receive the next frame. frame is written only with SADDLE_BUS_FRAME. */
 saddle_bus_received_t saddle_bus_receive(saddle_bus_t *bus, saddle_bus_frame_t *frame);
 
 /** Try to bring back a link that is down. For every tick. */

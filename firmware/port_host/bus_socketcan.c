@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/** Room for what comes while a tick runs, or the process is stopped for a moment. */
+/** Room for frames that arrive during a tick or a short stall of the process. */
 #define RECEIVE_BUFFER_BYTES (1 << 20)
 
 static bool fail(saddle_bus_t *bus, const char *reason)
@@ -35,8 +35,8 @@ static bool set_up(int fd, const char *interface_name)
            bind(fd, (const struct sockaddr *)&address, sizeof address) == 0;
 }
 
-/** The interface first: to open or close a CAN socket waits in the kernel for whoever is changing
- *  an interface, longer than a tick may. */
+/** Check the interface first: opening or closing a CAN socket waits in the kernel while another
+ *  process changes an interface, longer than a tick. */
 bool saddle_bus_socketcan_open(saddle_bus_t *bus)
 {
     if (!saddle_interface_is_up(bus->channel)) {
@@ -58,7 +58,7 @@ bool saddle_bus_socketcan_send(const saddle_bus_t *bus, const saddle_bus_frame_t
 }
 
 /** The kernel marks extended, remote and error frames in bits of the identifier above the 11. A
- *  CAN FD frame, which is longer, is none that anything here sends: junk, so that it is counted. */
+ *  CAN FD frame, which is longer, is counted as junk. */
 saddle_bus_received_t saddle_bus_socketcan_receive(const saddle_bus_t *bus,
                                                    saddle_bus_frame_t *frame)
 {

@@ -19,7 +19,7 @@ typedef struct {
 typedef enum {
     SADDLE_BUS_EMPTY,     /**< nothing waits */
     SADDLE_BUS_FRAME,
-    SADDLE_BUS_JUNK,      /**< something that was no CAN frame was taken from the bus */
+    SADDLE_BUS_JUNK,      /**< something other than a CAN frame was read from the bus */
     SADDLE_BUS_FAILED,    /**< errno says why */
     SADDLE_BUS_OFF,       /**< the controller has left the bus */
     SADDLE_BUS_RESTARTED  /**< it is on the bus again */
@@ -33,13 +33,13 @@ typedef struct {
     int send_fd;               /**< the same one on SocketCAN */
     struct sockaddr_in group;  /**< UDP: where frames are sent */
     bool on_loopback;          /**< UDP: does not leave this machine */
-    struct sockaddr_in own;    /**< UDP: where they come from, to know our own again */
+    struct sockaddr_in own;    /**< UDP: their source, to recognise our own */
     char channel[64];          /**< SocketCAN: INTERFACE; UDP: GROUP:PORT or GROUP:PORT@INTERFACE */
     char description[200];     /**< what was chosen and why, or why it could not be opened */
     saddle_link_t link;
     uint32_t sent;
-    uint32_t no_room;          /**< dropped, for the queue was full */
-    uint32_t no_link;          /**< dropped, for the link was lost */
+    uint32_t no_room;          /**< dropped: the queue was full */
+    uint32_t no_link;          /**< dropped: the link was down */
 } saddle_bus_t;
 
 #endif

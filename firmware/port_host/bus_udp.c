@@ -77,8 +77,8 @@ static bool set(int fd, int level, int option, const void *value, socklen_t size
     return setsockopt(fd, level, option, value, size) == 0;
 }
 
-/** Bound to the group: a socket bound to any address also hears the port's other groups. And heard
- *  on that interface alone: by default a group that anyone joined elsewhere is heard from there. */
+/** Bound to the group: a socket bound to any address also receives the port's other groups.
+ *  On that interface only: by default a group that another process joined elsewhere is received too. */
 static bool open_receiving(const saddle_bus_t *bus, const interface_t *interface)
 {
     const int yes = 1, no = 0, buffer = RECEIVE_BUFFER_BYTES, fd = bus->receive_fd;
@@ -91,7 +91,7 @@ static bool open_receiving(const saddle_bus_t *bus, const interface_t *interface
            set(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership);
 }
 
-/** A second socket: its port tells our own frames from all others. */
+/** A second socket: its port identifies our own frames. */
 static bool open_sending(saddle_bus_t *bus, const interface_t *interface)
 {
     const int hops = strcmp(interface->name, LOOPBACK) == 0 ? 0 : 1, fd = bus->send_fd;

@@ -1,7 +1,7 @@
 /**
  * CAN frames as UDP multicast datagrams, for machines whose kernel has no CAN. The datagrams are
  * python-can's (`udp_multicast`, see datagram.h). On the loopback interface, with hop limit 0, they
- * need no route and never leave the machine, nor are datagrams of other machines heard. If another
+ * need no route and never leave the machine, nor are datagrams of other machines received. If another
  * interface is named, that one is used, with hop limit 1. The functions are those of bus.h.
  */
 #ifndef SADDLEWALK_HOST_BUS_UDP_H

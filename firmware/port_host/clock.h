@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/** CLOCK_MONOTONIC, which no one sets. */
+/** CLOCK_MONOTONIC, which is never set. */
 uint64_t saddle_now_us(void);
 
 /** Time since a moment of CLOCK_REALTIME that has just been; 0 if the clock was set back since. */

@@ -153,7 +153,7 @@ static value_t take_value(reader_t *reader)
     }
 }
 
-/** What the map says; a key that is missing keeps python-can's default. */
+/** The map's values; a missing key keeps python-can's default. */
 typedef struct {
     uint64_t identifier, is_extended, is_remote, is_error, is_fd, length;
     value_t data;

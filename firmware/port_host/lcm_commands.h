@@ -2,7 +2,7 @@
  * Commands by LCM. liblcm hands over a message without its sender, so they are received on a socket
  * of their own, which reads LCM's UDP multicast datagrams:
  * https://lcm-proj.github.io/lcm/content/udp-multicast-protocol.html
- * Only what was sent on this machine counts, unless told otherwise. A filter in the kernel decides
+ * By default only commands sent on this machine are accepted. A filter in the kernel decides
  * that by the way a datagram came, not by its source address, and drops all other channels before
  * they wake this process.
  */

@@ -33,7 +33,7 @@ static void on_signal(int signal_number)
 static bool catch_signals(void)
 {
     const struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
-    const struct sigaction ignore = {.sa_handler = SIG_IGN}; /* nobody reads our words any more */
+    const struct sigaction ignore = {.sa_handler = SIG_IGN}; /* the reader of our output has gone */
     return pipe(stop_pipe) == 0 && fcntl(stop_pipe[1], F_SETFL, O_NONBLOCK) == 0 &&
            sigaction(SIGPIPE, &ignore, NULL) == 0 && sigaction(SIGINT, &action, NULL) == 0 &&
            sigaction(SIGTERM, &action, NULL) == 0;

@@ -123,7 +123,7 @@ void saddle_report_print(const saddle_report_t *report)
     const saddle_wire_receiver_t *receiver = &inbox->receiver;
     printf("%" PRIu32 " ticks, %" PRIu32 " late, %" PRIu32 " missed; frames: %" PRIu32
            " accepted, rejected %" PRIu32 " bad CRC, %" PRIu32 " bad counter, %" PRIu32
-           " bad version, %" PRIu32 " bad code, %" PRIu32 " malformed; commands: %" PRIu32 " obeyed, %" PRIu32
+           " bad version, %" PRIu32 " bad code, %" PRIu32 " malformed; commands: %" PRIu32 " applied, %" PRIu32
            " unusable, %" PRIu32 " ignored, %" PRIu32 " from other machines; not sent: %" PRIu32 " frames without room, %" PRIu32
            " without link, %" PRIu64 " LCM messages\n",
            timing->ticks, timing->late_ticks, timing->missed_ticks, receiver->accepted,

@@ -1,4 +1,4 @@
-/** How the host process fares, for LCM and for people; for CAN, see health.h. */
+/** Health of the host process, for LCM and as text; for CAN see health.h. */
 #ifndef SADDLEWALK_HOST_REPORT_H
 #define SADDLEWALK_HOST_REPORT_H
 

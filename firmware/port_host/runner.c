@@ -31,7 +31,7 @@ static uint64_t arrival_us(const saddle_runner_t *runner, uint32_t waited_us)
     return now_us > waited_us ? now_us - waited_us : 0;
 }
 
-/** Announced once: the count tells the rest. */
+/** Announced once; later ones are counted. */
 static void reject_foreign_command(saddle_inbox_t *inbox, struct in_addr source)
 {
     char address[INET_ADDRSTRLEN];
@@ -71,11 +71,11 @@ static bool is_lockstep_due(const saddle_runner_t *runner)
     return runner->lockstep && saddle_inbox_set_complete(&runner->inbox);
 }
 
-/** Said once: the counts tell the rest. */
+/** Announced once; later ones are counted. */
 static void announce_first_bad_version(const saddle_wire_receiver_t *receiver, uint32_t before)
 {
     if (before == 0 && receiver->bad_version != 0) {
-        saddle_announce("COMMAND of wire version %u refused: this firmware speaks version %u",
+        saddle_announce("COMMAND of wire version %u rejected: this firmware has version %u",
                         (unsigned)receiver->other_version, (unsigned)SADDLE_WIRE_VERSION);
     }
 }
@@ -141,7 +141,7 @@ static void publish(saddle_runner_t *runner, const saddle_input_t *input,
     saddle_lcm_publish(runner->lcm, input, output, &status, &health);
 }
 
-/** Without a number that cannot be foretold there is no new one, and the next tick tries again. */
+/** Without a random number there is no new session, and the next tick tries again. */
 static void open_session(saddle_runner_t *runner)
 {
     uint32_t session;
@@ -150,7 +150,7 @@ static void open_session(saddle_runner_t *runner)
     }
 }
 
-/** Nobody commands any more, and the walk that was commanded has come to its end. */
+/** Commands are stale and the commanded walk has ended. */
 static bool is_commandless(const saddle_output_t *output)
 {
     return (output->faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) != 0u &&
@@ -191,7 +191,7 @@ static bool wait(const saddle_runner_t *runner, uint64_t until_us)
             highest = fds[i] > highest ? fds[i] : highest;
         }
     }
-    /* Interrupted by a signal, `readable` says nothing: the next round sees stop_fd. */
+    /* Interrupted by a signal, `readable` is not valid: the next round sees stop_fd. */
     return select(highest + 1, &readable, NULL, NULL, until_us != 0 ? &timeout : NULL) < 0 ||
            !FD_ISSET(runner->stop_fd, &readable);
 }

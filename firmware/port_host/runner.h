@@ -3,7 +3,7 @@
  *
  * Realtime: ticks lie on an absolute grid of CLOCK_MONOTONIC; the time of a tick is its place on
  * the grid. The loop waits for frames and the next place at once, and the kernel notes when each
- * came, so its age is true even if it had to wait. A tick that ends after the next place counts as
+ * came, so its age is correct even if it had to wait. A tick that ends after the next place counts as
  * late, and a place that passed without a tick as missed: there is one tick at the newest place,
  * not one for each.
  * Lockstep: a set of the three MEASURED_xxx frames with one counter triggers one tick. The time of
@@ -34,13 +34,13 @@ void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, 
                         saddle_source_t command_from, saddle_bus_t *bus, saddle_lcm_port_t *lcm,
                         int stop_fd);
 
-/** Demand codes of whoever commands, docs/authentication.md, which LCM has none of. */
+/** Require authenticated commands, docs/authentication.md; commands by LCM have no codes. */
 void saddle_runner_demand_codes(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH]);
 
 /** Run until stop_fd is readable; a tick that has begun is finished. */
 void saddle_runner_run(saddle_runner_t *runner);
 
-/** What there is to report on now. */
+/** The present state, to report. */
 saddle_report_t saddle_runner_report(const saddle_runner_t *runner);
 
 #endif

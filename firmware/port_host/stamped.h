@@ -1,4 +1,4 @@
-/** Receive, and tell how long what came has waited for it. */
+/** Receive, with the time since the kernel's reception. */
 #ifndef SADDLEWALK_HOST_STAMPED_H
 #define SADDLEWALK_HOST_STAMPED_H
 
@@ -8,11 +8,11 @@
 #include <sys/socket.h>
 #include <sys/types.h>
 
-/** Have the kernel note when something comes. */
+/** Enable the kernel's receive timestamps. */
 bool saddle_stamp(int fd);
 
 /** As recvfrom(), without blocking. waited_us: since it came; a process that was stopped, or a
- *  flood, leaves old data in the queue, and their age must not begin when they are read. */
+ *  flood, leaves old data in the queue, whose age must not count from reading. */
 ssize_t saddle_receive_stamped(int fd, void *bytes, size_t size, struct sockaddr *source,
                                socklen_t source_size, uint32_t *waited_us);
 

@@ -15,11 +15,11 @@ enum {
 };
 
 /** CRC-32, zlib's, over the names of the fields, each with its '\0', and the words after the first:
- *  so it vouches for the values and for whose they are. */
+ *  so it protects the values and their order. */
 uint32_t saddle_settings_crc(const uint32_t *page);
 
 /** Read a page. False: it is damaged, was never written, or holds other fields, and nothing is
- *  changed. saddle_init() judges the values. */
+ *  changed. saddle_init() checks the values. */
 bool saddle_settings_read(const uint32_t *page, saddle_config_t *config, bool *lockstep);
 
 #endif

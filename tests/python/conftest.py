@@ -11,7 +11,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_runtest_setup(item):
-    """tools/vcan/up says by SADDLEWALK_VCAN that vcan0 and vcan1 are there for the tests alone."""
+    """tools/vcan/up sets SADDLEWALK_VCAN: vcan0 and vcan1 exist for the tests only."""
     if item.get_closest_marker("socketcan") and "SADDLEWALK_VCAN" not in os.environ:
         pytest.skip("SocketCAN on vcan0 and vcan1: make test-socketcan")
     if item.get_closest_marker("flood") and "flood" not in item.config.option.markexpr:

@@ -88,7 +88,7 @@ class Host:
     def stop(self, by: signal.Signals = signal.SIGTERM, announced: tuple[str, ...] = ()) -> str:
         """End the process cleanly; returns its summary line.
 
-        announced: how each line that it said on the way begins, in any order.
+        announced: how each announced line begins, in any order.
         """
         self.process.send_signal(by)
         output, errors = self.process.communicate(timeout=WAIT_S)

@@ -41,7 +41,7 @@ class Guarded:
         codec.saddle_wire_demand_codes(self.receiver, key)
         codec.saddle_wire_open_session(self.receiver, session)
 
-    def obeys(self, *frames: can.Message) -> bool:
+    def accepts(self, *frames: can.Message) -> bool:
         """Whether the last of the frames is accepted."""
         accepted = [
             self._codec.saddle_wire_accept(self.receiver, f.arbitration_id, bytes(f.data), 8)
@@ -85,8 +85,8 @@ def test_what_is_authenticated_is_accepted_and_nothing_else(codec):
     guarded, sender = Guarded(codec), wire.Sender()
     authenticator = speaking(guarded)
     for number in range(40):
-        assert guarded.obeys(*authenticator.frames(sender, **WALK)), number
-    assert not guarded.obeys(sender.frame("COMMAND", **WALK))
+        assert guarded.accepts(*authenticator.frames(sender, **WALK)), number
+    assert not guarded.accepts(sender.frame("COMMAND", **WALK))
     assert (guarded.receiver.bad_code, guarded.receiver.accepted) == (1, 80)
 
 
@@ -95,15 +95,15 @@ def test_a_replay_is_refused_in_its_session_and_in_the_next(codec):
     authenticator = speaking(guarded)
     recorded = [authenticator.frames(sender, **WALK) for _ in range(22)]
     for number in (2, 6, 10, 14):
-        assert guarded.obeys(*recorded[number])
-    assert not guarded.obeys(*recorded[2])  # 16 before the next, so its alive counter is in step
+        assert guarded.accepts(*recorded[number])
+    assert not guarded.accepts(*recorded[2])  # 16 before the next, so its alive counter is in step
     assert guarded.receiver.bad_code == 1
     # A replay costs two commands, for its alive counter, and no more.
-    assert [guarded.obeys(*recorded[number]) for number in (18, 19, 20)] == [False, False, True]
+    assert [guarded.accepts(*recorded[number]) for number in (18, 19, 20)] == [False, False, True]
     codec.saddle_wire_open_session(guarded.receiver, 5)
-    assert not guarded.obeys(*recorded[21])
+    assert not guarded.accepts(*recorded[21])
     authenticator.hear(guarded.session())
-    assert guarded.obeys(*authenticator.frames(sender, **WALK))
+    assert guarded.accepts(*authenticator.frames(sender, **WALK))
 
 
 def test_every_changed_bit_is_refused(codec):
@@ -115,21 +115,21 @@ def test_every_changed_bit_is_refused(codec):
             frames[which].data[bit // 8] ^= 1 << bit % 8
             frames[which].data[0] = wire.frame_crc(frames[which].arbitration_id, frames[which].data)
             spare = which == 0 and bit < 16
-            assert guarded.obeys(*frames) == spare, (which, bit)
+            assert guarded.accepts(*frames) == spare, (which, bit)
 
 
 def test_a_code_is_for_one_try(codec):
     guarded, sender = Guarded(codec), wire.Sender()
     code, command = speaking(guarded).frames(sender, **WALK)
     other = wire.Sender().frame("COMMAND", **(WALK | {"SPEED": 0.5}))
-    assert not guarded.obeys(code, other)
-    assert not guarded.obeys(command)
+    assert not guarded.accepts(code, other)
+    assert not guarded.accepts(command)
     assert guarded.receiver.bad_code == 2
 
 
 def test_another_key_is_refused(codec):
     guarded = Guarded(codec, key=bytes(16))
-    assert not guarded.obeys(*speaking(guarded).frames(wire.Sender(), **WALK))
+    assert not guarded.accepts(*speaking(guarded).frames(wire.Sender(), **WALK))
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""What the build makes and says: declarations for cffi, the set-up's complaints, the summary."""
+"""Products and messages of the build: declarations for cffi, errors of the set-up, the summary."""
 
 import graphlib
 import os
@@ -38,7 +38,7 @@ def test_a_missing_product_is_named_with_the_command_that_makes_it(monkeypatch, 
 
 
 @pytest.mark.parametrize(
-    ("now", "then", "said"),
+    ("now", "then", "message"),
     [
         ("SPEED : 16|16@1- (0.0001,0)", "SPEED : 16|16@1- (0.0001,1)", "has offset 1: must be 0"),
         ("SPEED : 16|16@1-", "SPEED : 16|12@1-", "is signed with 12 bits: must be 16"),
@@ -49,7 +49,7 @@ def test_a_missing_product_is_named_with_the_command_that_makes_it(monkeypatch, 
         ("BO_ 256 COMMAND: 8", "BO_ 256 COMMAND: 7", "COMMAND must be a classic frame of 8 bytes"),
     ],
 )
-def test_a_dbc_that_the_wire_cannot_pack_ends_the_build(now, then, said, tmp_path):
+def test_a_dbc_that_the_wire_cannot_pack_ends_the_build(now, then, message, tmp_path):
     text = (paths.CHECKOUT / "firmware/wire/saddlewalk.dbc").read_text()
     changed = tmp_path / "changed.dbc"
     changed.write_text(text.replace(now, then, 1))
@@ -57,7 +57,7 @@ def test_a_dbc_that_the_wire_cannot_pack_ends_the_build(now, then, said, tmp_pat
     command = [sys.executable, generator, changed, tmp_path / "wire_signals.h"]
     result = subprocess.run(command, capture_output=True, text=True)
     assert text.count(now) and result.returncode == 1
-    assert said in result.stderr and "Traceback" not in result.stderr
+    assert message in result.stderr and "Traceback" not in result.stderr
     assert not (tmp_path / "wire_signals.h").exists()
 
 

@@ -102,7 +102,7 @@ def test_in_real_time_its_timer_makes_the_ticks_and_ages_grow():
 
 
 def tool(name: str, *options: str) -> str:
-    """What a tool of the compiler says of the image."""
+    """Output of a compiler tool for the image."""
     return subprocess.check_output([f"arm-none-eabi-{name}", *options, qemu.IMAGE], text=True)
 
 

@@ -78,7 +78,7 @@ def test_probability_is_calibrated_between_walkers_of_a_kind_and_not_between_oth
     same = leave_one_out({"a": drawn(0.0, 1), "b": drawn(0.0, 2)})["a"]
     assert same.zero_margin_probability == pytest.approx(0.5, abs=0.03)
     assert same.brier < 0.6 * same.brier_of_base_rate
-    assert all(abs(said - true) < 0.1 for said, true, _ in same.reliability)
+    assert all(abs(predicted - true) < 0.1 for predicted, true, _ in same.reliability)
     assert sum(ticks for *_, ticks in same.reliability) == 3000
     other = leave_one_out({"a": drawn(0.0, 1), "b": drawn(0.3, 2)})["a"]
     assert other.zero_margin_probability == pytest.approx(0.95, abs=0.02)

@@ -177,8 +177,8 @@ def test_worth_counts_the_same_pushes_and_limits_the_staircases_turns():
         walk_of(1, cell=3, impulse_n_s=20.0), walk_of(41, cell=3, impulse_n_s=40.0, fell_at_s=9.0),
         walk_of(81, cell=3, impulse_n_s=10.0),
     ]  # fmt: skip
-    worth = recovery_benefit(walks)
-    assert (worth["pushes"], worth["recovery_alone_survives"], worth["both_survive"]) == (
+    benefit = recovery_benefit(walks)
+    assert (benefit["pushes"], benefit["recovery_alone_survives"], benefit["both_survive"]) == (
         2,
         0.5,
         0.5,

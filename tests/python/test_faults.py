@@ -1,4 +1,4 @@
-"""`saddlewalk faults`: what happens to frames, who judges, and what the firmware then does."""
+"""`saddlewalk faults`: faults of frames, the checker, and the firmware's reaction."""
 
 import math
 from dataclasses import replace
@@ -39,7 +39,7 @@ STANDING = {
 
 
 def sent_by(kind: str, strength: float, begin_s: float = 0.0, name: str = "MEASURED_LEFT"):
-    """FRAMES frames, one every 10 ms, whose X tells the time; what arrives, in its order."""
+    """FRAMES frames, one every 10 ms, whose X is the time; what arrives, in order."""
     occurrence = Occurrence(kind, strength, MESSAGES, begin_s, math.inf)
     line, sender = Line([occurrence], np.random.default_rng(1)), wire.Sender()
     for number in range(FRAMES):

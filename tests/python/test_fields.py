@@ -177,7 +177,7 @@ def base():
     return output
 
 
-def said(output) -> dict[str, float]:
+def values_of(output) -> dict[str, float]:
     """Every signal and member, decoded, by its name: PLAN_COM.X, plan.com_m[0]."""
     frames = ffi().new("saddle_frame_t[]", OUTPUT_FRAMES)
     library().saddle_wire_encode_output(output, ffi().new("saddle_wire_health_t *"), 0, frames)
@@ -203,11 +203,11 @@ def said(output) -> dict[str, float]:
 
 @functools.cache
 def before() -> dict[str, float]:
-    return said(base())
+    return values_of(base())
 
 
 def differences(output) -> dict[str, float]:
-    after = said(output)
+    after = values_of(output)
     return {
         name: value
         for name, value in after.items()

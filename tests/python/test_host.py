@@ -166,7 +166,7 @@ def test_an_unusable_command_is_counted_and_the_last_one_holds():
             tick = host.tick()
             assert tick["HEALTH"]["REJECTED_FRAMES"] == rejected
             assert tick["PLAN_EVENTS"]["MODE"] == STARTING
-        assert "1 obeyed, 2 unusable, 0 ignored, " in host.stop()
+        assert "1 applied, 2 unusable, 0 ignored, " in host.stop()
 
 
 def test_parameters_reach_the_core():
@@ -359,7 +359,7 @@ def test_commands_by_lcm_in_real_time():
         assert speed_after(node, 0.8) == pytest.approx(0.8)
         node.command(0, 0.0)
         assert speed_after(node, 0.0) == 0
-        assert "commands: 2 obeyed, 0 unusable, 0 ignored, " in host.stop()
+        assert "commands: 2 applied, 0 unusable, 0 ignored, " in host.stop()
 
 
 def speed_after(node: LcmNode, expected_m_s: float) -> float:
@@ -384,7 +384,7 @@ def test_bad_lcm_commands_are_counted_and_not_used():
         on_lcm = node.take()
         assert on_lcm["SADDLEWALK_PLAN"].speed_m_s == pytest.approx(0.8)
         assert on_lcm["SADDLEWALK_HEALTH"].commands_rejected == 6
-        assert "1 obeyed, 6 unusable, 0 ignored, " in host.stop()
+        assert "1 applied, 6 unusable, 0 ignored, " in host.stop()
 
 
 @pytest.mark.parametrize(

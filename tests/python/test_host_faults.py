@@ -86,11 +86,11 @@ def test_the_first_that_commands_is_obeyed_and_the_other_counted():
         status = until(node, "STATUS", lambda status: status.commands_ignored == 3)
         assert status.command_source == status.SOURCE_LCM
         until(node, "PLAN", lambda plan: plan.speed_m_s == pytest.approx(0.8))
-        assert "commands: 1 obeyed, 0 unusable, 3 ignored, " in host.stop()
+        assert "commands: 1 applied, 0 unusable, 3 ignored, " in host.stop()
 
 
 def test_the_other_may_command_once_the_first_is_silent_and_the_walk_has_ended():
-    """While the walk ends, a newcomer is not obeyed: the walk that is stopping stays stopped."""
+    """While the walk ends, a new source is ignored: the walk that is stopping stays stopped."""
     url = own_lcm()
     with Host("--lcm", url, *QUICK) as host:
         node = LcmNode(url)

@@ -66,7 +66,7 @@ def walk_of(consumer: str, folder: Path, **variables: str | Path) -> str:
 
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory) -> str:
-    """What the README's program prints, built as the README says."""
+    """Output of the README's program, built as described there."""
     program = tmp_path_factory.mktemp("plain") / "walk"
     flags = ["-Ifirmware/core/include", "-ffp-contract=off"]
     readme = " ".join((CHECKOUT / "README.md").read_text().split())
@@ -117,7 +117,7 @@ def test_find_package_gives_the_core_and_the_wire(installed, walk, tmp_path):
 
 
 def test_the_wire_builds_without_cmake_to_the_same_frames(installed, tmp_path):
-    """As docs/porting.md says it for any other build."""
+    """As docs/porting.md describes it for any other build."""
     configure("find_package", tmp_path, CMAKE_PREFIX_PATH=installed, WANTED=VERSION)
     run(cached("CMAKE_COMMAND"), "--build", tmp_path, "-j2")
     wire, dbc = CHECKOUT / "firmware/wire", CHECKOUT / "firmware/wire/saddlewalk.dbc"

@@ -71,7 +71,7 @@ def table(path: Path) -> list[dict[str, str]]:
 
 
 @pytest.fixture(scope="module")
-def said(folder) -> dict[str, list[dict[str, str]]]:
+def announced(folder) -> dict[str, list[dict[str, str]]]:
     """By run: what `supervise` says of every fourth row, from row (number modulo 4) on."""
     config = folder.parent / "body.toml"
     config.write_text("body_mass_kg = 63.30\nbody_height_m = 1.7900\n")
@@ -94,10 +94,10 @@ def first_alarm_s(walk: dict[str, str], rows: list[dict[str, str]]) -> float:
     return min((t for t in times if float(walk["push_time_s"]) <= t < fall_s), default=math.nan)
 
 
-def test_rates_are_those_of_what_supervise_says(folder, said):
+def test_rates_are_those_of_what_supervise_says(folder, announced):
     found = evaluate(folder)["twin"]
     pushed = [walk for walk in table(folder / "walks.csv") if walk["push_time_s"]]
-    alarms = {walk["run"]: first_alarm_s(walk, said[walk["run"]]) for walk in pushed}
+    alarms = {walk["run"]: first_alarm_s(walk, announced[walk["run"]]) for walk in pushed}
     falls = [walk for walk in pushed if walk["fell"] == "1"]
     leads = [float(walk["fall_time_s"]) - alarms[walk["run"]] for walk in falls]
     known = [lead for lead in leads if math.isfinite(lead)]
@@ -111,10 +111,10 @@ def test_rates_are_those_of_what_supervise_says(folder, said):
     assert found["alarms_though_upright"] == sum(upright)
 
 
-def test_steady_levels_are_those_of_what_supervise_says(folder, said):
+def test_steady_levels_are_those_of_what_supervise_says(folder, announced):
     found = evaluate(folder)["twin"]
     for run, begin_s in ((RUNS[0], 1.0 + 2.0), (RUNS[1], 1.0)):
-        rows = said[run.name]
+        rows = announced[run.name]
         first_s = float(rows[0]["t_s"])
         levels = [row["level"] for row in rows if float(row["t_s"]) - first_s > begin_s - 1.0]
         for level in LEVELS:
@@ -125,12 +125,12 @@ def test_steady_levels_are_those_of_what_supervise_says(folder, said):
 
 @pytest.mark.parametrize(("window", "longest_s"), WINDOWS.items())
 @pytest.mark.parametrize("column", ["mos_com_m", "s_sw"])
-def test_areas_count_the_pairs_of_a_fall_and_none(window, longest_s, column, folder, said):
+def test_areas_count_the_pairs_of_a_fall_and_none(window, longest_s, column, folder, announced):
     least: dict[str, list[float]] = {"0": [], "1": []}
     for walk in table(folder / "walks.csv"):
         if walk["push_time_s"]:
             end_s = min(6 + longest_s, float(walk["fall_time_s"] or 99) - 0.24) - 1e-6
-            rows = [row for row in said[walk["run"]] if 6 <= float(row["t_s"]) < end_s]
+            rows = [row for row in announced[walk["run"]] if 6 <= float(row["t_s"]) < end_s]
             least[walk["fell"]].append(min(float(row[column]) for row in rows if row[column]))
     pairs = [(fell, not_) for fell in least["1"] for not_ in least["0"]]
     share = sum((fell < not_) + 0.5 * (fell == not_) for fell, not_ in pairs) / len(pairs)
@@ -226,7 +226,7 @@ def test_emulated_wearers_stand_beside_recorded_walkers(folder, tmp_path):
     assert (tmp_path / "reliability.png").read_bytes().startswith(b"\x89PNG")
 
 
-# One walk of 101 ticks with a push at 4 s, and what was said of it.
+# One walk of 101 ticks with a push at 4 s, and what was announced of it.
 PUSH_S, TICKS = 4.0, 101
 
 
@@ -305,8 +305,8 @@ def test_a_stumble_is_an_xcom_that_leaves_the_feet_or_a_wide_step():
     assert score(wide, announcement()).stumble is None
 
 
-def made_up(walk: Walk, said: Announced) -> Scored:
-    return Scored(walk, said, {"exact": score(walk, said)})
+def made_up(walk: Walk, announced: Announced) -> Scored:
+    return Scored(walk, announced, {"exact": score(walk, announced)})
 
 
 def test_the_worst_misses_come_first_and_are_drawn(tmp_path):

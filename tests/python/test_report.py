@@ -1,4 +1,4 @@
-"""`saddlewalk report`: the page's numbers are the log's, and what the log lacks is said."""
+"""`saddlewalk report`: the page's numbers are the log's, and what the log lacks is reported."""
 
 import html.parser
 import math

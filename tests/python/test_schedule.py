@@ -175,8 +175,8 @@ def test_the_foot_stands_where_it_is_from_heel_strike_to_toe_off(schedule, capsy
 def test_a_speed_that_is_not_feasible_is_limited_and_said(schedule, capsys):
     path = schedule("0,0\n1,2.5\n6,1\n")
     assert run("--schedule", path, "--duration", "9") == 0
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1 and f"{path}: line 3, speed_m_s: 2.5 is not feasible" in said
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1 and f"{path}: line 3, speed_m_s: 2.5 is not feasible" in printed
 
 
 def test_picture_is_drawn(capsys, tmp_path):

@@ -100,7 +100,7 @@ def test_the_readme_cansend_starts_a_walk():
         tick = host.tick()
         assert tick["COMMAND"]["SPEED"] == pytest.approx(1.2)
         assert tick["PLAN_EVENTS"]["MODE"] == 1
-        assert " 1 obeyed" in host.stop()
+        assert " 1 applied" in host.stop()
 
 
 def test_cansend_cannot_harm_the_firmware():

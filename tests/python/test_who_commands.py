@@ -1,4 +1,4 @@
-"""Who can command the host process: this machine, and by LCM others only if an option says so."""
+"""Who can command the host process: this machine, and by LCM others only with an option."""
 
 import socket
 import struct

@@ -205,15 +205,15 @@ def message_of(frame) -> can.Message:
     return can.Message(arbitration_id=frame.id, is_extended_id=False, data=bytes(frame.data))
 
 
-def assert_says(said: float, value: float, scale: float) -> None:
+def assert_decoded(expected: float, value: float, scale: float) -> None:
     """Within half a step, or the end of the range, or nothing: independent of both codecs."""
     end = 32767 * scale
     if not math.isfinite(value):
-        assert math.isnan(said)
+        assert math.isnan(expected)
     else:
         # 1e-6 of the number: two single-precision roundings, of the quotient and of the product.
         nearest = min(max(value, -end), end)
-        assert abs(said - nearest) <= scale / 2 + 1e-6 * abs(nearest)
+        assert abs(expected - nearest) <= scale / 2 + 1e-6 * abs(nearest)
 
 
 def is_known(codec, output, signal: str, field: str) -> bool:
@@ -252,48 +252,52 @@ def random_output(codec, rng: random.Random):
     """A saddle_output_t, and what its frames must say, by the names of the DBC."""
     output = random_states(rng)
     plan, scores, verdict = output.plan, output.scores, output.verdict
-    said = {}
+    expected = {}
     for message, signals in NUMBERS.items():
-        said[message] = {}
+        expected[message] = {}
         for signal, field in signals.items():
-            said[message][signal] = any_number(rng, scale_of(message, signal))
-            put(output, field, said[message][signal])
+            expected[message][signal] = any_number(rng, scale_of(message, signal))
+            put(output, field, expected[message][signal])
     for message, signals in NUMBERS.items():
         for signal, field in signals.items():
             if not is_known(codec, output, signal, field):
-                said[message][signal] = math.nan
-    said["PLAN_STEP"] |= {"VALID": plan.valid, "SUPPORT": plan.support, "PHASE": plan.phase}
-    said["PLAN_STEP"]["STEP_COUNT"] = plan.step_count % 65536
-    said["PLAN_EVENTS"]["MODE"] = plan.mode
-    said["SCORES_FORCE"]["FAULTS"] = output.faults
-    said["SCORES_ENERGY"] |= {"CAN_STOP": scores.can_stop, "ON_TRACK": verdict.on_track}
-    said["SCORES_ENERGY"]["PAPER_STABLE"] = scores.paper_stable
-    said["VERDICT"] |= {"LEVEL": verdict.level, "REASON": verdict.reason}
-    said["VERDICT"]["COMPARED"] = verdict.compared
-    said["BALANCE"]["DRIVER"] = verdict.driver
+                expected[message][signal] = math.nan
+    expected["PLAN_STEP"] |= {"VALID": plan.valid, "SUPPORT": plan.support, "PHASE": plan.phase}
+    expected["PLAN_STEP"]["STEP_COUNT"] = plan.step_count % 65536
+    expected["PLAN_EVENTS"]["MODE"] = plan.mode
+    expected["SCORES_FORCE"]["FAULTS"] = output.faults
+    expected["SCORES_ENERGY"] |= {"CAN_STOP": scores.can_stop, "ON_TRACK": verdict.on_track}
+    expected["SCORES_ENERGY"]["PAPER_STABLE"] = scores.paper_stable
+    expected["VERDICT"] |= {"LEVEL": verdict.level, "REASON": verdict.reason}
+    expected["VERDICT"]["COMPARED"] = verdict.compared
+    expected["BALANCE"]["DRIVER"] = verdict.driver
     recovery = verdict.recovery
-    said["RECOVERY"] |= {"FOUND": recovery.found, "STOPS": recovery.stops, "FOOT": recovery.foot}
-    said["HEALTH"] = {"STATUS": output.status, "LIMITS": output.limits}
-    return output, said
+    expected["RECOVERY"] |= {
+        "FOUND": recovery.found,
+        "STOPS": recovery.stops,
+        "FOOT": recovery.foot,
+    }
+    expected["HEALTH"] = {"STATUS": output.status, "LIMITS": output.limits}
+    return output, expected
 
 
 def random_health(rng: random.Random):
     """A saddle_wire_health_t, and what its frames must say."""
     health = ffi.new("saddle_wire_health_t *")
-    said = {}
+    expected = {}
     for message, signals in COUNTS.items():
-        said[message] = {}
+        expected[message] = {}
         for signal, (field, largest, unit) in signals.items():
             value = rng.randrange(2 ** rng.randint(1, 32)) if largest != 3 else rng.randrange(4)
             put(health, field, value)
             sent = value // unit
-            said[message][signal] = sent % 65536 if largest is None else min(sent, largest)
-    said["TIMING"] = {}
+            expected[message][signal] = sent % 65536 if largest is None else min(sent, largest)
+    expected["TIMING"] = {}
     for signal, field in TIMES.items():
         time_us = rng.randrange(2 ** rng.randint(1, 32))
         put(health, field, time_us)
-        said["TIMING"][signal] = float(np.float32(time_us) * np.float32(1e-6))
-    return health, said
+        expected["TIMING"][signal] = float(np.float32(time_us) * np.float32(1e-6))
+    return health, expected
 
 
 def test_output_from_c_to_python(codec):
@@ -301,18 +305,18 @@ def test_output_from_c_to_python(codec):
     frames = ffi.new("saddle_frame_t[]", len(NUMBERS))
     sender, receiver = wire.Sender(), wire.Receiver()
     for counter in range(OUTPUTS):
-        output, said = random_output(codec, rng)
+        output, expected = random_output(codec, rng)
         health, process = random_health(rng)
         for name, values in process.items():
-            said[name] = said.get(name, {}) | values
+            expected[name] = expected.get(name, {}) | values
         codec.saddle_wire_encode_output(output, health, counter % 256, frames)
-        for frame, (name, values) in zip(frames, said.items(), strict=True):
+        for frame, (name, values) in zip(frames, expected.items(), strict=True):
             assert sender.frame(name, **values).data == bytes(frame.data), (name, values)
             received_name, received = receiver.accept(message_of(frame))
             assert (received_name, received["COUNTER"]) == (name, counter % 16)
             for signal in values:
                 if signal in NUMBERS[name] or signal in TIMES:
-                    assert_says(received[signal], values[signal], scale_of(name, signal))
+                    assert_decoded(received[signal], values[signal], scale_of(name, signal))
                 else:
                     assert received[signal] == values[signal], signal
     assert receiver.accepted == OUTPUTS * len(NUMBERS)
@@ -327,14 +331,14 @@ def test_a_tick_has_as_many_messages_here_as_there(codec):
 
 def random_measurement(rng: random.Random):
     measurement = ffi.new("saddle_measurement_t *")
-    said = {}
+    expected = {}
     for message, signals in MEASURED.items():
-        said[message] = {name: any_number(rng, scale_of(message, name)) for name in signals}
+        expected[message] = {name: any_number(rng, scale_of(message, name)) for name in signals}
         for name, field in signals.items():
-            put(measurement, field, said[message][name])
+            put(measurement, field, expected[message][name])
     for side, message in enumerate(("MEASURED_LEFT", "MEASURED_RIGHT")):
-        measurement.foot[side].contact = said[message]["CONTACT"] = rng.random() < 0.5
-    return measurement, said
+        measurement.foot[side].contact = expected[message]["CONTACT"] = rng.random() < 0.5
+    return measurement, expected
 
 
 def test_measurement_both_ways(codec):
@@ -344,9 +348,9 @@ def test_measurement_both_ways(codec):
     sender, python = wire.Sender(), wire.Receiver()
     c = ffi.new("saddle_wire_receiver_t *")
     for counter in range(INPUTS):
-        measurement, said = random_measurement(rng)
+        measurement, expected = random_measurement(rng)
         codec.saddle_wire_encode_measurement(measurement, counter % 256, frames)
-        for frame, (name, values) in zip(frames, said.items(), strict=True):
+        for frame, (name, values) in zip(frames, expected.items(), strict=True):
             sent = sender.frame(name, **values)
             assert sent.data == bytes(frame.data), (name, values)
             message = codec.saddle_wire_accept(c, sent.arbitration_id, bytes(sent.data), 8)
@@ -355,7 +359,7 @@ def test_measurement_both_ways(codec):
             _, received = python.accept(sent)
             for signal, field in MEASURED[name].items():
                 assert same(get(decoded, field), received[signal])
-                assert_says(received[signal], values[signal], scale_of(name, signal))
+                assert_decoded(received[signal], values[signal], scale_of(name, signal))
     assert c.accepted == python.accepted == INPUTS * len(MEASURED)
 
 
@@ -395,7 +399,7 @@ def test_every_raw_value_decodes_alike(codec):
 
 
 def test_counter_rule_on_both_sides(codec):
-    """Random sequences of losses, repeats, restarts and noise are judged alike."""
+    """Random sequences of losses, repeats, restarts and noise are checked alike."""
     rng = random.Random(SEED + 3)
     frames = [wire.Sender().frame("COMMAND", MODE=1, SPEED=1.2, HEEL_STRIKE=0.1) for _ in range(16)]
     for counter, frame in enumerate(frames):

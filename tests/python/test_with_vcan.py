@@ -1,4 +1,4 @@
-"""tools/vcan/with-vcan: what runs in it, and what it says where it cannot be had."""
+"""tools/vcan/with-vcan: commands that run in it, and its messages where it is not available."""
 
 import shutil
 import subprocess

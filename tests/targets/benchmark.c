@@ -1,7 +1,7 @@
 /* What there is to be measured, in one image: initialisations, then ticks of every kind.
  *
  * Prints the sizes, then one line for each tick in turn, `tick MODE LEVEL FAULTS`, by which the
- * counted instructions are told apart. */
+ * counted instructions are separated. */
 #include "sequences.h"
 
 #include <stdio.h>

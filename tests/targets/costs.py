@@ -260,12 +260,12 @@ INTRODUCTION = """\
 # What it costs
 
 Written by `make test-targets` from what it measured; `tests/targets/budgets.toml` holds the limits
-that fail the build, and `tests/targets/costs.py` says how each number is taken. Instructions are
+that fail the build, and `tests/targets/costs.py` defines each number. Instructions are
 counted in QEMU, call by call, callees included; they are not cycles. Flash is what a program links
 that calls the whole interface, code and constants, without the compiler's own routines. Stack is
 the deepest way through the call graph. {ticks} ticks were measured: a wearer who follows the plan
-and is pushed, the same with absurd numbers, and with numbers that are none. Most of these stand,
-which is cheap, so the median of all says less than that of a walk.
+and is pushed, the same with absurd numbers, and with NaN. Most of them are standing ticks,
+which are cheap, so the median of a walk is more informative than that of all.
 """
 
 

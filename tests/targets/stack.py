@@ -100,7 +100,7 @@ def aliases(nm: str, image: Path) -> dict[str, list[str]]:
 
 
 def call_graph(files: Iterable[Path], disassembly: str, nm: str, image: Path) -> CallGraph:
-    """The compiler's, completed by what only the image tells."""
+    """The compiler's call graph, completed from the image."""
     graph = of_compiler(files)
     linked = of_image(disassembly)
     same = aliases(nm, image)

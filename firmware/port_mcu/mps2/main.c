@@ -1,5 +1,5 @@
 /** A controller on the MPS2 board. Started by QEMU with a serial line to an emulated wearer; when
- *  the wearer leaves, it tells through semihosting how it fared. Exit status 1: nothing could run. */
+ *  the wearer leaves, it prints its statistics through semihosting. Exit status 1: it could not run. */
 #include "controller.h"
 #include "mps2.h"
 #include "settings.h"
@@ -24,7 +24,7 @@ static void run(void)
 {
     mps2_can_start();
     mps2_clock_start();
-    if (!controller.lockstep) { /* there nobody knows when the next tick is due */
+    if (!controller.lockstep) { /* the time of the next tick is unknown there */
         mps2_watchdog_start();
     }
     while (!mps2_can_closed()) {

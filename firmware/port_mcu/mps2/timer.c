@@ -14,8 +14,8 @@ typedef struct {
 
 static volatile uint32_t ticks_due;
 
-/** Both at once: an interrupt of higher priority that asked for the time between them would be told
- *  that of a round before. */
+/** Both at once: between them, an interrupt of higher priority would read a time
+ *  that is one round too early. */
 void mps2_timer_came_round(void)
 {
     const uint32_t held = mps2_interrupts_hold();

@@ -9,11 +9,10 @@
 #define COUNTER_STEP_MAX 4u
 #define AGE_MAX_MS 4095u
 
-/** A session ends in good time before its freshness does: this leaves some minutes. */
+/** A session ends some minutes before its freshness is used up. */
 #define FRESHNESS_END 60000u
 
-/** While nobody commands there is a new one every so many ticks, 2 s: a code that was held back is
- *  of no use for longer. */
+/** Without commands there is a new session every so many ticks, 2 s, so that a delayed code expires. */
 #define IDLE_SESSION_TICKS 25u
 
 /** A frame's bytes 0 to 7 are one number of 64 bits, byte 0 the lowest. These are a signal's part of
@@ -207,7 +206,7 @@ static uint32_t code_of(const saddle_cmac_key_t *key, uint32_t session, uint16_t
     return (uint32_t)code[0] << 24 | (uint32_t)code[1] << 16 | (uint32_t)code[2] << 8 | code[3];
 }
 
-/** A code is tried once. */
+/** A code is checked once. */
 static bool is_authentic(saddle_wire_guard_t *guard, const uint8_t *command)
 {
     if (!guard->demanded || !guard->waits) {
@@ -557,7 +556,7 @@ void saddle_wire_open_session(saddle_wire_receiver_t *receiver, uint32_t session
     receiver->guard.waits = false;
 }
 
-/** Whoever commands next may be new, and counts from 1. */
+/** The next commander may be new, and counts from 1. */
 bool saddle_wire_session_is_over(const saddle_wire_receiver_t *receiver,
                                  const saddle_output_t *output, uint32_t ticks)
 {

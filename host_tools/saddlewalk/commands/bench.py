@@ -13,7 +13,7 @@ def add_parser(subparsers: Any) -> None:
         help="planning time of the core and other planners, and its instructions",
         description="Measure what the paper measured: the time to plan 1 and 10 strides with "
         "scores, gravity and margins. For comparison: the same equations in numpy and GNU Octave, "
-        "walking QPs, placo, and a floor. What is not installed is named and left out. Times depend "
+        "walking QPs, placo, and a floor. What is not installed is named and skipped. Times depend "
         "on the machine's load; the instruction counts, by valgrind, do not.",
     )
     parser.add_argument(

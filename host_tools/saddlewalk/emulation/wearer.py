@@ -2,8 +2,8 @@
 
 The CoM is a linear inverted pendulum about the CoP, which stays within the standing feet.
 The feet follow the planned swing with a lag and stay where they land. The wearer balances by
-moving the CoP (ankle strategy). The firmware decides where to step: one kind of wearer always keeps
-to the planned steps, the other takes the firmware's recovery step, within its legs' reach and speed.
+moving the CoP (ankle strategy). The firmware decides where to step: one kind of wearer keeps to the
+planned steps, the other takes the firmware's recovery step, within its legs' reach and speed.
 
 Points of the transverse plane are complex numbers, x forward + 1j * y to the left, in metres: a
 step of 1 ms in plain floats is ten times faster than in arrays. World frame: x from the start,
@@ -32,7 +32,7 @@ class Body:
     """The wearer. Mass, height and pendulum ratio as in the firmware's configuration.
 
     `double_support`, `heel_m` and `toe_m` were tuned in November 2026 so that the unperturbed XCoM
-    and speed vary as in recorded adults (0.07 m, 0.12 m/s), as tests/python/test_emulator.py checks.
+    and speed vary as in recorded adults (0.07 m, 0.12 m/s): see tests/python/test_emulator.py.
     """
 
     mass_kg: float = 63.3

@@ -104,7 +104,7 @@ class Device:
 def run(
     scenario: Scenario, index: int, number: int, seed: int, config: Any
 ) -> tuple[Outcome, list[Messages]]:
-    """Walk `number` with the scenario's fault `index`, in lockstep, with the messages of every tick."""
+    """Walk `number` with the scenario's fault `index`, in lockstep; and the ticks' messages."""
     random = np.random.default_rng([seed, index, number])
     fault = scenario.faults[index]
     occurrence = draw(fault, random)

@@ -1,7 +1,7 @@
 /**
  * AES-128-CMAC (RFC 4493, NIST SP 800-38B): a code that only who has the key can make. Constant
  * tables, no heap, no branch on the key or the bytes. The table of 256 bytes is looked up by secret
- * values: on a processor with a data cache its timing can tell them to a program beside it.
+ * values: on a processor with a data cache its timing can reveal them to another program.
  */
 #ifndef SADDLEWALK_CMAC_H
 #define SADDLEWALK_CMAC_H

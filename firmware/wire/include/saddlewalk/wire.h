@@ -1,9 +1,10 @@
 /**
  * Saddlewalk on CAN: bytes to structs and back. Knows no bus, clock, heap or global.
  *
- * saddlewalk.dbc is the only source of identifiers, positions and scales; the constants that
- * tools/wire_signals.py writes from it do the packing. Its VERSION is SADDLE_WIRE_VERSION, one more with every change of
- * the bits or of their meaning: a COMMAND of another version is refused. This layer adds what a DBC cannot say:
+ * saddlewalk.dbc is the only source of identifiers, positions and scales, from which
+ * tools/wire_signals.py generates the constants for packing. Its VERSION is SADDLE_WIRE_VERSION and
+ * increases with every change of the bits or of their meaning: a COMMAND of another version is
+ * rejected. This layer adds what a DBC cannot express:
  *
  *     byte 0      CRC-8 SAE J1850 over the identifier, low byte first, then bytes 1 to 7
  *     byte 1      low 4 bits: alive counter, one more (modulo 16) each time the message is sent
@@ -14,7 +15,7 @@
  * as -32768, not available, and received as NaN, which saddle_tick() reports as a fault.
  *
  * No pointer is kept. Every function is re-entrant and takes a bounded time; where codes are
- * demanded, a COMMAND takes one block of AES more. Stack under 300 bytes. Of the C library it needs
+ * required, a COMMAND takes one block of AES more. Stack under 300 bytes. Of the C library it needs
  * nothing, unless the compiler makes memcpy() of a copy.
  *
  *     on a frame:  switch (saddle_wire_accept(&receiver, id, data, length)) {
@@ -55,7 +56,7 @@ typedef struct {
 
 /** The messages that the firmware receives. */
 typedef enum {
-    SADDLE_WIRE_NONE = -1, /**< the frame was refused, and counted */
+    SADDLE_WIRE_NONE = -1, /**< the frame was rejected and counted */
     SADDLE_WIRE_COMMAND = 0,
     SADDLE_WIRE_MEASURED_COM = 1,
     SADDLE_WIRE_MEASURED_LEFT = 2,
@@ -64,11 +65,11 @@ typedef enum {
     SADDLE_WIRE_MESSAGE_COUNT
 } saddle_wire_message_t;
 
-/** How the process around the core fares: TIMING, RECEIVED, INPUTS and HEALTH. What is too large
- *  for its signal is sent as the end of the range. */
+/** Health of the process around the core: TIMING, RECEIVED, INPUTS and HEALTH. Numbers too large
+ *  for their signal are sent as the end of the range. */
 typedef struct {
     uint32_t late_ticks;
-    uint32_t rejected_frames; /**< and commands: all that came and was not used */
+    uint32_t rejected_frames; /**< and commands */
     uint32_t period_us;       /**< between the last two ticks */
     uint32_t latency_us;      /**< of this tick, behind its time */
     uint32_t latency_max_us;  /**< of all */
@@ -84,14 +85,14 @@ typedef struct {
     bool seen;
 } saddle_wire_alive_t;
 
-/** What a COMMAND must be vouched for with, docs/authentication.md. */
+/** Authentication of COMMAND, docs/authentication.md. */
 typedef struct {
     bool demanded;
-    bool opened; /**< a session; before the first no code is good */
+    bool opened; /**< a session; before the first no code is valid */
     saddle_cmac_key_t key;
-    uint32_t session;   /**< a code is good in its session alone */
-    uint16_t freshness; /**< of the last good code; the next must be higher */
-    bool waits;         /**< a code has come and its COMMAND not yet */
+    uint32_t session;   /**< a code is valid in its session only */
+    uint16_t freshness; /**< of the last valid code; the next must be higher */
+    bool waits;         /**< a code was received and its COMMAND not yet */
     uint8_t frame[SADDLE_WIRE_LENGTH]; /**< that code's */
 } saddle_wire_guard_t;
 
@@ -115,26 +116,26 @@ uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length);
 uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH]);
 
 /**
- * Judge one received frame: which message it is, or SADDLE_WIRE_NONE. Exactly one count of the
- * receiver moves. data is read only if length is SADDLE_WIRE_LENGTH; any bytes are safe.
+ * Check one received frame: returns its message, or SADDLE_WIRE_NONE. Exactly one count of the
+ * receiver increases. data is read only if length is SADDLE_WIRE_LENGTH; any bytes are safe.
  * Counter rule, per message: the first frame is accepted, then one that is 1 to 4 ahead of the
- * last accepted. A repeat is refused. Any other is refused too, but the next frame may be 1 to 4
- * ahead of it instead: a sender that restarted loses one frame. A refused frame never changes the
+ * last accepted. A repeat is rejected. Any other is rejected too, but the next frame may be 1 to 4
+ * ahead of it instead: a sender that restarted loses one frame. A rejected frame never changes the
  * last accepted counter.
  */
 saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint32_t id,
                                          const uint8_t *data, size_t length);
 
-/** From now on accept a COMMAND only after a COMMAND_CODE that vouches for it: none before there is
+/** From now on accept a COMMAND only after a COMMAND_CODE that authenticates it: none before there is
  *  a session. */
 void saddle_wire_demand_codes(saddle_wire_receiver_t *receiver,
                               const uint8_t key[SADDLE_CMAC_LENGTH]);
 
-/** Begin a session with a number that cannot be foretold; freshness begins anew. Codes of the
- *  session before are refused. When: saddle_wire_session_is_over(). */
+/** Begin a session with an unpredictable number; freshness restarts. Codes of the previous
+ *  session are rejected. When: saddle_wire_session_is_over(). */
 void saddle_wire_open_session(saddle_wire_receiver_t *receiver, uint32_t session);
 
-/** Whether a tick is to open a new session: there is none, the freshness nears its end, or nobody
+/** Whether a tick is to open a new session: there is none, the freshness nears its end, or there are no
  *  commands. output: the tick's; ticks: how many came before it. Never while no codes are
  *  demanded. */
 bool saddle_wire_session_is_over(const saddle_wire_receiver_t *receiver,
@@ -144,7 +145,7 @@ bool saddle_wire_session_is_over(const saddle_wire_receiver_t *receiver,
 void saddle_wire_encode_session(const saddle_wire_receiver_t *receiver, uint8_t counter,
                                 saddle_frame_t *frame);
 
-/** Data of an accepted SADDLE_WIRE_COMMAND. The mode is 0 to 15: the core judges it. */
+/** Data of an accepted SADDLE_WIRE_COMMAND. The mode is 0 to 15: the core checks it. */
 void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_command_t *command);
 
 /** Data of an accepted SADDLE_WIRE_MEASURED_xxx: writes that part of the measurement, without its
@@ -158,7 +159,7 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
                                uint8_t counter, saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES]);
 
 /** The other direction, for the node that measures and commands, and for tests.
- *  A mode above 15 is sent as 15, which no firmware obeys. */
+ *  A mode above 15 is sent as 15, which all firmware rejects. */
 void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,
                                 saddle_frame_t *frame);
 

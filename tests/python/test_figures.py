@@ -1,0 +1,72 @@
+"""Figures in the README are those of the pages that it cites, and those of the commands' output."""
+
+import math
+import re
+
+import pytest
+
+from saddlewalk import paths
+
+README = (paths.CHECKOUT / "README.md").read_text()
+TEXT = " ".join(README.split())
+
+
+def row(page: str, name: str) -> list[float]:
+    """The numbers of a table's row, by its first cell."""
+    text = (paths.CHECKOUT / "docs" / page).read_text()
+    cells = re.search(rf"^\| {re.escape(name)} \|(.*)\|$", text, re.MULTILINE)
+    assert cells, f"{page}: no row {name}"
+    return [float(number.replace(",", "")) for number in re.findall(r"\d[\d,]*\.?\d*", cells[1])]
+
+
+def readme(pattern: str) -> list[float]:
+    found = re.search(pattern, TEXT)
+    assert found, pattern
+    return [float(number.replace(",", "")) for number in found.groups()]
+
+
+def test_the_costs_of_a_tick():
+    median, most, context = readme(
+        r"some ([\d,]+) instructions on a Cortex-M4F, at most ([\d,]+), in (\d+) bytes of context"
+    )
+    assert median == round(row("costs.md", "tick of a walk, -O2, median")[0], -2)
+    assert most == 100 * math.ceil(row("costs.md", "any tick, -O2, maximum")[0] / 100)
+    assert context == row("costs.md", "context, bytes")[0]
+
+
+def test_the_prediction_of_falls():
+    planned, recovery = readme(r"(\d+) % of the falls .*? and (\d+) % if it takes")
+    assert [planned, recovery] == [round(x) for x in row("evaluation.md", ALARMS)]
+    medians = readme(r"median warning ([\d.]+) s and ([\d.]+) s")
+    planned_lead, _, recovery_lead, _ = row("evaluation.md", LEADS)
+    assert medians == [planned_lead, recovery_lead]
+    (minutes,) = readme(r"false alarm in (\d+) minutes of steady unperturbed walking")
+    planned_share, planned_min, recovery_share, recovery_min = row("evaluation.md", STEADY)
+    assert (planned_share, recovery_share, planned_min + recovery_min) == (0, 0, minutes)
+
+
+ALARMS = "falls with an alarm before"
+LEADS = "lead time, median and 10th percentile"
+STEADY = "unperturbed steady walking announced unstable"
+
+
+def test_the_effect_of_the_recovery_step():
+    (share,) = readme(r"recovery step prevents the fall for (\d+) % of the pushes")
+    text = (paths.CHECKOUT / "docs/evaluation.md").read_text()
+    found = re.search(r"\*\*([\d.]+) %\*\* only\s+with the recovery step", text)
+    assert found and share == round(float(found[1]))
+
+
+def test_the_planning_time():
+    (times,) = readme(r"is (\d+) times as fast as the fastest walking QP")
+    text = (paths.CHECKOUT / "docs/benchmark.md").read_text()
+    found = re.search(r"fastest QP / core, 1 stride: at least 100 +([\d.]+) ", text)
+    assert found and times == round(float(found[1]))
+
+
+def test_no_figure_goes_unchecked():
+    """A number with a unit among the README's claims stands in one of the tests above."""
+    claims = TEXT.partition("## How good it is")[2].partition("## The commands")[0]
+    assert len(re.findall(r"\d[\d,.]* (?:%|s\b|minutes|instructions|bytes|times)", claims)) == 9
+    with pytest.raises(AssertionError):
+        readme(r"never in the README (\d)")
