@@ -64,19 +64,3 @@ def test_files_and_make_targets_that_pages_name_exist():
     text = "".join(page.read_text() for page in PAGES)
     assert {*TARGET.findall(text)} - targets == set()
     assert [name for name in FILE.findall(text) if not (CHECKOUT / name).exists()] == []
-
-
-def test_readme_s_cost_of_a_tick_is_that_of_the_costs_page():
-    """Rounded to hundreds; the page is written by make test-targets."""
-    rows = (CHECKOUT / "docs/costs.md").read_text()
-
-    def measured(label: str) -> int:
-        return int(re.search(rf"^\| {label} \| ([\d,]+) ", rows, re.MULTILINE)[1].replace(",", ""))
-
-    median, most = measured("tick of a walk, -O2, median"), measured("any tick, -O2, maximum")
-    context = measured("context, bytes")
-    readme = " ".join((CHECKOUT / "README.md").read_text().split())
-    assert (
-        f"takes some {round(median, -2):,} instructions on a Cortex-M4F, "
-        f"at most {round(most, -2):,}, in {context} bytes of context"
-    ) in readme

@@ -145,8 +145,8 @@ def refused(arguments: list[str], capsys) -> str:
     ("content", "named"),
     [
         (b"", "is empty"),
-        (b"t_s,x\n1,2\n", "is no LCM log"),
-        (b"\xed\xa1\xda\x01ab", "not one event"),
+        (b"t_s,x\n1,2\n", "is not an LCM log"),
+        (b"\xed\xa1\xda\x01ab", "none of its events"),
     ],
 )
 @pytest.mark.parametrize("command", [["export", "--format", "mcap"], ["report"]])
@@ -173,12 +173,12 @@ def test_a_log_of_others_is_refused_and_others_in_ours_are_told(walk, tmp_path, 
     assert "skipped: 1 messages on CAMERA" in printed.err and "camera" not in printed.out
 
 
-def test_of_a_log_that_was_cut_the_rest_is_exported_and_told(walk, tmp_path, capsys):
+def test_of_a_log_that_was_cut_the_rest_is_exported_and_reported(walk, tmp_path, capsys):
     cut = tmp_path / "cut.lcmlog"
     cut.write_bytes((walk / "walk.lcmlog").read_bytes()[:100000])
     assert main(["export", str(cut), "--format", "csv"]) == 1
     printed = capsys.readouterr()
-    assert "incomplete: " in printed.err and "no event" in printed.err
+    assert "incomplete: " in printed.err and "not an event" in printed.err
     assert (tmp_path / "cut-csv" / "plan.csv").stat().st_size > 1000
 
 

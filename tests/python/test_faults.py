@@ -159,7 +159,7 @@ FAULT = '[[fault]]\nclass = "loss"\nstrength = 0.5\nfrom_s = 1\nfor_s = 2\n'
         (WALK + FAULT.replace("0.5", "1.5"), "[[fault]] 1: strength = 1.5 must be in 0 to 1"),
         (WALK + FAULT.replace("0.5", "[]"), "[[fault]] 1: strength = [] must be in 0 to 1"),
         (WALK + FAULT.replace("0.5", '"a"'), "[[fault]] 1: strength = 'a' must be in 0 to 1"),
-        (WALK + FAULT + "size = 3\n", "[[fault]] 1: size is none of "),
+        (WALK + FAULT + "size = 3\n", "[[fault]] 1: size is not one of "),
         (WALK + FAULT + 'messages = ["HEALTH"]\n', "messages = ['HEALTH'] must be of COMMAND"),
         (WALK + FAULT.replace("from_s = 1", "from_s = [3, 1]"), "one number, or two rising"),
         (WALK + FAULT.replace("for_s = 2", "for_s = [1, 2]"), "for_s = [1.0, 2.0] must be one"),

@@ -127,7 +127,7 @@ def test_bad_frames_are_counted_and_not_used():
         assert after["HEALTH"]["REJECTED_FRAMES"] == 7
         assert after["PLAN_EVENTS"]["MODE"] == STANDING_MODE
         assert after["SCORES_MARGIN"] == before["SCORES_MARGIN"] | {"COUNTER": 1}
-        summary = host.stop(announced=("COMMAND of wire version 99 refused: ",))
+        summary = host.stop(announced=("COMMAND of wire version 99 rejected: ",))
         assert (
             "rejected 1 bad CRC, 1 bad counter, 1 bad version, 0 bad code, 4 malformed" in summary
         )

@@ -134,7 +134,7 @@ def test_another_wire_version_is_refused_by_name_and_said_once():
             host.bus.send(frame)
         status = until(node, "STATUS", lambda status: status.frames_bad_version == 5)
         assert (status.other_version, status.wire_version) == (3, WIRE_VERSION)
-        host.stop(announced=("COMMAND of wire version 3 refused: this firmware speaks version ",))
+        host.stop(announced=("COMMAND of wire version 3 rejected: this firmware has version ",))
 
 
 def test_what_waited_while_the_process_was_stopped_is_as_old_as_it_is():

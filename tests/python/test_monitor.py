@@ -272,7 +272,7 @@ def test_a_level_and_a_reason_of_other_firmware_are_given_by_number():
 def test_no_recovery_step_is_said_and_by_how_much():
     message = verdict()
     message.recovery_found, message.recovery_margin_m = 0, -0.12
-    assert dashboard.recovery_step(message) == "none within reach, 0.12 m lacking"
+    assert dashboard.recovery_step(message) == "none within reach, 0.12 m short"
     message.compared = 0
     assert dashboard.recovery_step(message) == "n/a"
 

@@ -139,7 +139,7 @@ def test_the_page_is_whole_in_itself(page):
     assert page.tags["img"] == 3 and "No faults or limits were reported." in page.text
     assert page.addresses and all(a.startswith("data:image/png;base64,") for a in page.addresses)
     assert not page.tags.keys() & {"script", "link", "iframe", "object"}
-    assert "Saddlewalk is no medical device." in page.text
+    assert "Saddlewalk is not a medical device." in page.text
 
 
 def test_levels_have_the_time_that_the_log_gives_them(walk, page):
@@ -277,7 +277,7 @@ def test_faults_late_ticks_and_refused_frames_are_told(walk, tmp_path):
     ((name, words, *numbers),) = page.tables[TROUBLES]
     assert (name, numbers) == ("LEFT_STALE", ["2", "0.24", "1.60", "2.40"])
     assert words == "the left foot's measurement is too old"
-    assert f"{TICKS - 1} ticks late, 4 left out" in page.short["timing, since the firmware's start"]
+    assert f"{TICKS - 1} ticks late, 4 missed" in page.short["timing, since the firmware's start"]
     text = page.short["CAN, since the firmware's start"]
     assert text.startswith("1234 frames accepted, rejected: 7 bad CRC")
     assert page.tags["img"] == 4 and "When each fault and limit was reported." in page.text
@@ -318,7 +318,7 @@ def test_without_verdicts_it_says_so(walk, tmp_path, unseen):
     log = write_events(tmp_path / "log", without(events_of(walk), "VERDICT"))
     page = report(log, tmp_path / "a.html")
     assert "No verdict was logged." in page.text and ALARMS not in page.tables
-    assert "came on SADDLEWALK_VERDICT: levels, alarms, energies" in page.text
+    assert "was received on SADDLEWALK_VERDICT: levels, alarms, energies" in page.text
     assert page.short["episodes by level"] == "not known"
 
 
@@ -331,7 +331,7 @@ def test_without_inputs_steps_are_the_plans(walk, tmp_path):
     walked_m = plans[-1].origin_x_m + plans[-1].com_m[0] - plans[0].com_m[0]
     assert page.short["distance of the CoM"] == f"{walked_m:.2f} m, planned"
     assert "From the plan, not from the person" in " ".join(page.text.split())
-    assert "came on SADDLEWALK_INPUT: what was measured" in page.text and AGES not in page.tables
+    assert "was received on SADDLEWALK_INPUT: measurements" in page.text and AGES not in page.tables
     rows = {tuple(row[:3]): row[3:] for row in page.tables[VARIABILITY]}
     of_model = {"step length (m)": 2 * (0.1802 * 1.2 + 0.1351), "step width (m)": 0.1}
     for what, value in of_model.items():
@@ -342,7 +342,7 @@ def test_without_inputs_steps_are_the_plans(walk, tmp_path):
 def test_with_scores_alone_there_still_is_a_page(walk, tmp_path):
     events = [e for e in events_of(walk) if e.channel == "SADDLEWALK_SCORES"]
     page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
-    assert page.text.count("Nothing that can be read came on") == 7
+    assert page.text.count("Nothing readable was received on") == 7
     assert page.short["steps, distance, speed"] == "not known"
     assert "Neither measured feet nor a plan was logged." in page.text
 

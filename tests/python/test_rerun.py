@@ -242,8 +242,8 @@ def test_a_log_that_was_cut_says_so(walk, tmp_path, capsys):
     [
         (b"", "is empty"),
         (b"\x89PNG" + bytes(100), "neither an LCM log nor a CAN log"),
-        (bytes.fromhex("eda1da01"), "not one event"),
-        (bytes.fromhex("eda1da01") + bytes(range(256)), "not one event"),
+        (bytes.fromhex("eda1da01"), "none of its events"),
+        (bytes.fromhex("eda1da01") + bytes(range(256)), "none of its events"),
     ],
 )
 def test_what_is_no_log_is_one_line(tmp_path, capfd, content, named):
@@ -309,7 +309,7 @@ def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
         can_log(tmp_path / "lost.log", frames[: answered[9] - 24] + frames[answered[9] + 1 :]),
         capsys,
     )
-    assert status == 1 and "9 ticks computed" in shown and "2 sets of measurements came" in shown
+    assert status == 1 and "9 ticks recomputed" in shown and "2 sets of measurements came" in shown
     log = can_log(tmp_path / "frame.log", frames[: answered[9] - 8] + frames[answered[9] - 7 :])
     status, shown, _ = rerun(log, capsys)
     assert (

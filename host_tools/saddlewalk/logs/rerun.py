@@ -19,6 +19,7 @@ from saddlewalk.firmware import Firmware, default_config, ffi, library
 from saddlewalk.logs.messages import decode
 from saddlewalk.transport.lcm_log import Event
 
+TIME_MAX_US = 2**63 - 1  # of LCM's signed times
 GAPS_MAX = 20  # listed one by one
 # Channels that firmware before them did not have: a log without any of it is whole all the same.
 ADDED_CHANNELS = {"SADDLEWALK_BALANCE"}
@@ -145,6 +146,10 @@ def _begun(event: Event, config: Event | None) -> LoggedTick:
         raise UserError(
             f"a message of {len(event.data)} bytes on SADDLEWALK_INPUT is not an input_t as "
             f"saddlewalk {__version__} has it"
+        )
+    if inputs.time_us > TIME_MAX_US:
+        raise UserError(
+            f"tick {number[0]} on SADDLEWALK_INPUT has a negative time: the log is damaged"
         )
     if config is not None and _utime_us(config) != inputs.time_us:
         config = None
