@@ -19,17 +19,17 @@ static void record(int function, float argument)
 
 /* The linker gives the names, by --wrap. */
 /* NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp,misc-use-internal-linkage) */
-#define RECORDED(name, function)                 \
-    float __real_##name(float x);            \
-    float __wrap_##name(float x);            \
-    float __wrap_##name(float x)             \
-    {                                        \
-        record(function, x);                   \
-        const bool outer = recording;          \
-        recording = false;                     \
-        const float y = __real_##name(x);    \
-        recording = outer;                     \
-        return y;                            \
+#define RECORDED(name, function)          \
+    float __real_##name(float x);         \
+    float __wrap_##name(float x);         \
+    float __wrap_##name(float x)          \
+    {                                     \
+        record(function, x);              \
+        const bool outer = recording;     \
+        recording = false;                \
+        const float y = __real_##name(x); \
+        recording = outer;                \
+        return y;                         \
     }
 
 RECORDED(saddle_sin, SADDLE_BENCH_SIN)

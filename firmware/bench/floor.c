@@ -1,7 +1,7 @@
 #include "floor.h"
 
-#include <math.h>
 #include "math/elementary.h"
+#include <math.h>
 
 static float sin_and_cos(float x_rad)
 {
@@ -10,9 +10,9 @@ static float sin_and_cos(float x_rad)
 }
 
 /* A macro, so that each function is called as the core calls it, and not through a pointer. */
-#define SUM_OF(function, count)                       \
-    for (uint32_t i = 0; i < (count); i++) {          \
-        sum += function(arguments[next++]);           \
+#define SUM_OF(function, count)              \
+    for (uint32_t i = 0; i < (count); i++) { \
+        sum += function(arguments[next++]);  \
     }
 
 float saddle_bench_floor(const saddle_bench_calls_t *calls, const float *arguments, uint32_t *used)

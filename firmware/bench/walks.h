@@ -8,12 +8,12 @@
 
 /** In the order of saddle_bench_walk(). */
 enum {
-    SADDLE_BENCH_PLAN,    /**< a steady walk without a wearer, with scores of the plan, as in the paper */
-    SADDLE_BENCH_SLOW,    /**< 0.7 m/s: standing, starting, walking, stopping, by a wearer who follows
-                               the plan */
-    SADDLE_BENCH_MIDDLE,  /**< 1.2 m/s, likewise */
-    SADDLE_BENCH_FAST,    /**< 1.6 m/s, likewise */
-    SADDLE_BENCH_PUSHED,  /**< 1.2 m/s, then faster than planned, then beyond what a step can recover */
+    SADDLE_BENCH_PLAN, /**< a steady walk without a wearer, with scores of the plan, as in the paper */
+    SADDLE_BENCH_SLOW, /**< 0.7 m/s: standing, starting, walking, stopping, by a wearer who follows
+                            the plan */
+    SADDLE_BENCH_MIDDLE, /**< 1.2 m/s, likewise */
+    SADDLE_BENCH_FAST,   /**< 1.6 m/s, likewise */
+    SADDLE_BENCH_PUSHED, /**< 1.2 m/s, then faster than planned, then beyond what a step can recover */
     SADDLE_BENCH_INVALID, /**< 1.2 m/s, each tick with another unusable input */
     SADDLE_BENCH_WALKS
 };

@@ -13,8 +13,7 @@ saddle_wire_health_t saddle_health(const saddle_timing_t *timing, const saddle_i
         .command_source = (uint8_t)inbox->authority,
         .input_age_us = {[SADDLE_WIRE_COMMAND] = input->command_age_us,
                          [SADDLE_WIRE_MEASURED_COM] = input->measurement.com.age_us,
-                         [SADDLE_WIRE_MEASURED_LEFT] =
-                             input->measurement.foot[SADDLE_LEFT].age_us,
+                         [SADDLE_WIRE_MEASURED_LEFT] = input->measurement.foot[SADDLE_LEFT].age_us,
                          [SADDLE_WIRE_MEASURED_RIGHT] =
                              input->measurement.foot[SADDLE_RIGHT].age_us},
         .accepted = receiver->accepted,

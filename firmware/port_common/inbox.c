@@ -1,6 +1,6 @@
 #include "inbox.h"
 
-#define MEASURED_SET                                                        \
+#define MEASURED_SET                                                    \
     (1u << SADDLE_WIRE_MEASURED_COM | 1u << SADDLE_WIRE_MEASURED_LEFT | \
      1u << SADDLE_WIRE_MEASURED_RIGHT)
 
@@ -30,8 +30,8 @@ void saddle_inbox_take_command(saddle_inbox_t *inbox, saddle_source_t source,
     }
 }
 
-static void take_measured(saddle_inbox_t *inbox, saddle_wire_message_t message,
-                          const uint8_t *data, uint64_t time_us)
+static void take_measured(saddle_inbox_t *inbox, saddle_wire_message_t message, const uint8_t *data,
+                          uint64_t time_us)
 {
     const uint8_t counter = saddle_wire_counter(data);
     saddle_wire_decode_measured(message, data, &inbox->input.measurement);
@@ -43,8 +43,8 @@ static void take_measured(saddle_inbox_t *inbox, saddle_wire_message_t message,
     inbox->set |= 1u << message;
 }
 
-void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *data,
-                             size_t length, uint64_t time_us)
+void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *data, size_t length,
+                             uint64_t time_us)
 {
     const saddle_wire_message_t message = saddle_wire_accept(&inbox->receiver, id, data, length);
     if (message == SADDLE_WIRE_COMMAND) {
@@ -61,8 +61,7 @@ bool saddle_inbox_set_complete(const saddle_inbox_t *inbox)
     return inbox->set == MEASURED_SET;
 }
 
-static uint32_t age_us(const saddle_inbox_t *inbox, saddle_wire_message_t message,
-                       uint64_t time_us)
+static uint32_t age_us(const saddle_inbox_t *inbox, saddle_wire_message_t message, uint64_t time_us)
 {
     if ((inbox->came & 1u << message) == 0u) {
         return SADDLE_AGE_NEVER_US;
@@ -93,7 +92,7 @@ void saddle_inbox_release(saddle_inbox_t *inbox)
 uint32_t saddle_inbox_rejected(const saddle_inbox_t *inbox)
 {
     const saddle_wire_receiver_t *receiver = &inbox->receiver;
-    return receiver->malformed + receiver->bad_crc + receiver->bad_version +
-           receiver->bad_counter + receiver->bad_code + inbox->commands_unusable +
-           inbox->commands_ignored + inbox->commands_foreign;
+    return receiver->malformed + receiver->bad_crc + receiver->bad_version + receiver->bad_counter +
+           receiver->bad_code + inbox->commands_unusable + inbox->commands_ignored +
+           inbox->commands_foreign;
 }

@@ -19,7 +19,7 @@ typedef enum {
 } saddle_source_t;
 
 typedef struct {
-    saddle_source_t chosen;    /**< the only one that may command; NONE: see saddle_inbox_release() */
+    saddle_source_t chosen; /**< the only one that may command; NONE: see saddle_inbox_release() */
     saddle_source_t authority; /**< the source that commands now */
     saddle_input_t input;      /**< ages as of the last saddle_inbox_read() */
     saddle_wire_receiver_t receiver;
@@ -37,8 +37,8 @@ typedef struct {
 void saddle_inbox_init(saddle_inbox_t *inbox, saddle_source_t chosen);
 
 /** Process a frame received from CAN at time_us. */
-void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *data,
-                             size_t length, uint64_t time_us);
+void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *data, size_t length,
+                             uint64_t time_us);
 
 /** Process a command; NULL: an invalid message. An unusable command does not gain authority. */
 void saddle_inbox_take_command(saddle_inbox_t *inbox, saddle_source_t source,

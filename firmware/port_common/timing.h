@@ -13,14 +13,14 @@
 
 /** Start from all zeros. */
 typedef struct {
-    uint64_t began_us;     /**< of the last tick */
+    uint64_t began_us; /**< of the last tick */
     uint32_t ticks;
     uint32_t late_ticks;   /**< ended after the next was due */
     uint32_t missed_ticks; /**< places on the grid without a tick */
     uint32_t period_us;    /**< from the last tick but one to the last */
     uint32_t latency_us;   /**< from the place on the grid to the beginning */
     uint32_t latency_max_us;
-    uint32_t work_us;      /**< from the beginning of the last tick but one to its end */
+    uint32_t work_us; /**< from the beginning of the last tick but one to its end */
     uint32_t work_max_us;
     uint32_t latencies[SADDLE_LATENCY_BINS]; /**< ticks by latency */
 } saddle_timing_t;

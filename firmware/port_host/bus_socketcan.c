@@ -63,8 +63,8 @@ saddle_bus_received_t saddle_bus_socketcan_receive(const saddle_bus_t *bus,
                                                    saddle_bus_frame_t *frame)
 {
     struct canfd_frame raw; /* begins as a can_frame */
-    const ssize_t size = saddle_receive_stamped(bus->receive_fd, &raw, sizeof raw, NULL, 0,
-                                                &frame->waited_us);
+    const ssize_t size =
+        saddle_receive_stamped(bus->receive_fd, &raw, sizeof raw, NULL, 0, &frame->waited_us);
     if (size < 0) {
         return SADDLE_BUS_FAILED;
     }

@@ -17,29 +17,29 @@ typedef struct {
 
 /** saddle_bus_receive() returns one of the first three; the others are between it and the kinds. */
 typedef enum {
-    SADDLE_BUS_EMPTY,     /**< nothing waits */
+    SADDLE_BUS_EMPTY, /**< nothing waits */
     SADDLE_BUS_FRAME,
-    SADDLE_BUS_JUNK,      /**< something other than a CAN frame was read from the bus */
-    SADDLE_BUS_FAILED,    /**< errno says why */
-    SADDLE_BUS_OFF,       /**< the controller has left the bus */
-    SADDLE_BUS_RESTARTED  /**< it is on the bus again */
+    SADDLE_BUS_JUNK,     /**< something other than a CAN frame was read from the bus */
+    SADDLE_BUS_FAILED,   /**< errno says why */
+    SADDLE_BUS_OFF,      /**< the controller has left the bus */
+    SADDLE_BUS_RESTARTED /**< it is on the bus again */
 } saddle_bus_received_t;
 
 typedef enum { SADDLE_BUS_SOCKETCAN = 0, SADDLE_BUS_UDP = 1 } saddle_bus_kind_t;
 
 typedef struct {
     saddle_bus_kind_t kind;
-    int receive_fd;            /**< becomes readable when something waits */
-    int send_fd;               /**< the same one on SocketCAN */
-    struct sockaddr_in group;  /**< UDP: where frames are sent */
-    bool on_loopback;          /**< UDP: does not leave this machine */
-    struct sockaddr_in own;    /**< UDP: their source, to recognise our own */
-    char channel[64];          /**< SocketCAN: INTERFACE; UDP: GROUP:PORT or GROUP:PORT@INTERFACE */
-    char description[200];     /**< what was chosen and why, or why it could not be opened */
+    int receive_fd;           /**< becomes readable when something waits */
+    int send_fd;              /**< the same one on SocketCAN */
+    struct sockaddr_in group; /**< UDP: where frames are sent */
+    bool on_loopback;         /**< UDP: does not leave this machine */
+    struct sockaddr_in own;   /**< UDP: their source, to recognise our own */
+    char channel[64];         /**< SocketCAN: INTERFACE; UDP: GROUP:PORT or GROUP:PORT@INTERFACE */
+    char description[200];    /**< what was chosen and why, or why it could not be opened */
     saddle_link_t link;
     uint32_t sent;
-    uint32_t no_room;          /**< dropped: the queue was full */
-    uint32_t no_link;          /**< dropped: the link was down */
+    uint32_t no_room; /**< dropped: the queue was full */
+    uint32_t no_link; /**< dropped: the link was down */
 } saddle_bus_t;
 
 #endif

@@ -172,10 +172,10 @@ static bool take_entry(reader_t *reader, message_t *message)
     const struct {
         const char *name;
         uint64_t *number;
-    } numbers[] = {{"arbitration_id", &message->identifier}, {"dlc", &message->length},
-                   {"is_extended_id", &message->is_extended}, {"is_fd", &message->is_fd},
-                   {"is_remote_frame", &message->is_remote},
-                   {"is_error_frame", &message->is_error}};
+    } numbers[] = {
+        {"arbitration_id", &message->identifier},  {"dlc", &message->length},
+        {"is_extended_id", &message->is_extended}, {"is_fd", &message->is_fd},
+        {"is_remote_frame", &message->is_remote},  {"is_error_frame", &message->is_error}};
     const value_t key = take_value(reader);
     const value_t value = take_value(reader);
     if (reader->bad || key.kind != VALUE_BYTES) {
@@ -223,8 +223,8 @@ bool saddle_datagram_decode(const uint8_t *datagram, size_t size, saddle_bus_fra
     if (reader.bad || reader.next != reader.end || !is_classic(&message)) {
         return false;
     }
-    *frame = (saddle_bus_frame_t){.id = (uint32_t)message.identifier,
-                                  .length = (uint8_t)message.length};
+    *frame =
+        (saddle_bus_frame_t){.id = (uint32_t)message.identifier, .length = (uint8_t)message.length};
     frame->id |= (message.is_extended != 0 ? EXTENDED_FRAME : 0) |
                  (message.is_remote != 0 ? REMOTE_FRAME : 0) |
                  (message.is_error != 0 ? ERROR_FRAME : 0);

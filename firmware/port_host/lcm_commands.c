@@ -59,29 +59,40 @@ static bool attach_filter(int fd, bool from_network)
 #define LOAD(size, offset) BPF_STMT(BPF_LD | (size) | BPF_ABS, (uint32_t)(offset))
 #define UNLESS(value, ahead) BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, ahead)
 #define IF(value, ahead) BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, ahead, 0)
-#define FOUR(text) ((uint32_t)(text)[0] << 24 | (uint32_t)(text)[1] << 16 | \
-                    (uint32_t)(text)[2] << 8 | (uint32_t)(text)[3])
+#define FOUR(text)                                                                      \
+    ((uint32_t)(text)[0] << 24 | (uint32_t)(text)[1] << 16 | (uint32_t)(text)[2] << 8 | \
+     (uint32_t)(text)[3])
     static const uint8_t channel[] = CHANNEL; /* 18 letters and the 0 that ends it */
+    /* clang-format off: a row for each comparison */
     struct sock_filter steps[] = {
-        LOAD(BPF_W, UDP_HEADER), UNLESS(MAGIC, 18),
-        LOAD(BPF_W, UDP_HEADER + HEADER), UNLESS(FOUR(channel), 16),
-        LOAD(BPF_W, UDP_HEADER + HEADER + 4), UNLESS(FOUR(channel + 4), 14),
-        LOAD(BPF_W, UDP_HEADER + HEADER + 8), UNLESS(FOUR(channel + 8), 12),
-        LOAD(BPF_W, UDP_HEADER + HEADER + 12), UNLESS(FOUR(channel + 12), 10),
-        LOAD(BPF_H, UDP_HEADER + HEADER + 16), UNLESS('N' << 8 | 'D', 8),
-        LOAD(BPF_B, UDP_HEADER + HEADER + 18), UNLESS(0, 6),
-        LOAD(BPF_W, SKF_AD_OFF + SKF_AD_IFINDEX), IF(LOOPBACK_INDEX, 3),
-        LOAD(BPF_W, SKF_AD_OFF + SKF_AD_PKTTYPE), IF(PACKET_LOOPBACK, 1),
+        LOAD(BPF_W, UDP_HEADER),
+        UNLESS(MAGIC, 18),
+        LOAD(BPF_W, UDP_HEADER + HEADER),
+        UNLESS(FOUR(channel), 16),
+        LOAD(BPF_W, UDP_HEADER + HEADER + 4),
+        UNLESS(FOUR(channel + 4), 14),
+        LOAD(BPF_W, UDP_HEADER + HEADER + 8),
+        UNLESS(FOUR(channel + 8), 12),
+        LOAD(BPF_W, UDP_HEADER + HEADER + 12),
+        UNLESS(FOUR(channel + 12), 10),
+        LOAD(BPF_H, UDP_HEADER + HEADER + 16),
+        UNLESS('N' << 8 | 'D', 8),
+        LOAD(BPF_B, UDP_HEADER + HEADER + 18),
+        UNLESS(0, 6),
+        LOAD(BPF_W, SKF_AD_OFF + SKF_AD_IFINDEX),
+        IF(LOOPBACK_INDEX, 3),
+        LOAD(BPF_W, SKF_AD_OFF + SKF_AD_PKTTYPE),
+        IF(PACKET_LOOPBACK, 1),
         BPF_STMT(BPF_RET | BPF_K, foreign),
         BPF_STMT(BPF_RET | BPF_K, WHOLE),
         BPF_STMT(BPF_RET | BPF_K, NOTHING),
     };
+    /* clang-format on */
 #undef LOAD
 #undef UNLESS
 #undef IF
 #undef FOUR
-    const struct sock_fprog program = {.len = sizeof steps / sizeof steps[0],
-                                       .filter = steps};
+    const struct sock_fprog program = {.len = sizeof steps / sizeof steps[0], .filter = steps};
     return setsockopt(fd, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program) == 0;
 }
 
@@ -116,9 +127,9 @@ saddle_lcm_received_t saddle_lcm_commands_receive(int fd, saddle_lcm_arrival_t *
     uint8_t datagram[DATAGRAM_MAX + 1]; /* one more: a longer datagram shows as too long */
     struct sockaddr_in source;
     saddlewalk_command_t message;
-    const ssize_t size = saddle_receive_stamped(fd, datagram, sizeof datagram,
-                                                (struct sockaddr *)&source, sizeof source,
-                                                &arrival->waited_us);
+    const ssize_t size =
+        saddle_receive_stamped(fd, datagram, sizeof datagram, (struct sockaddr *)&source,
+                               sizeof source, &arrival->waited_us);
     if (size < 0) {
         return SADDLE_LCM_EMPTY;
     }

@@ -15,10 +15,10 @@
 #include <stdint.h>
 
 typedef enum {
-    SADDLE_LCM_EMPTY,    /**< nothing waits */
+    SADDLE_LCM_EMPTY, /**< nothing waits */
     SADDLE_LCM_COMMAND,
-    SADDLE_LCM_JUNK,     /**< on the channel of commands, but no command_t */
-    SADDLE_LCM_FOREIGN   /**< a command from another machine, which does not count */
+    SADDLE_LCM_JUNK,   /**< on the channel of commands, but no command_t */
+    SADDLE_LCM_FOREIGN /**< a command from another machine, which does not count */
 } saddle_lcm_received_t;
 
 typedef struct {

@@ -161,10 +161,8 @@ static saddlewalk_bos_t bos_message(const saddle_bos_t *bos, int64_t utime_us)
 const char *saddle_lcm_channel(saddle_lcm_output_t part)
 {
     static const char *const names[SADDLE_LCM_OUTPUTS] = {
-        [SADDLE_LCM_PLAN] = "SADDLEWALK_PLAN",
-        [SADDLE_LCM_SCORES] = "SADDLEWALK_SCORES",
-        [SADDLE_LCM_VERDICT] = "SADDLEWALK_VERDICT",
-        [SADDLE_LCM_BALANCE] = "SADDLEWALK_BALANCE",
+        [SADDLE_LCM_PLAN] = "SADDLEWALK_PLAN",       [SADDLE_LCM_SCORES] = "SADDLEWALK_SCORES",
+        [SADDLE_LCM_VERDICT] = "SADDLEWALK_VERDICT", [SADDLE_LCM_BALANCE] = "SADDLEWALK_BALANCE",
         [SADDLE_LCM_BOS] = "SADDLEWALK_BOS",
     };
     return names[part];

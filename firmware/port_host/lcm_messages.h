@@ -35,8 +35,7 @@ int saddle_lcm_encode_input(const saddle_input_t *input, int32_t tick,
                             uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
 
 /** input_t back, to the bit. False, and nothing written, unless the bytes are one, to the end. */
-bool saddle_lcm_decode_input(const uint8_t *bytes, int size, saddle_input_t *input,
-                             int32_t *tick);
+bool saddle_lcm_decode_input(const uint8_t *bytes, int size, saddle_input_t *input, int32_t *tick);
 
 /** config_t. Returns the size in bytes. */
 int saddle_lcm_encode_config(const saddle_config_t *config, uint64_t time_us, bool lockstep,

@@ -196,13 +196,17 @@ static bool is_consistent(const saddle_options_t *options)
 
 saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *argv[])
 {
-    static const struct option known[] = {
-        {"can", required_argument, NULL, 'c'},   {"lcm", required_argument, NULL, 'l'},
-        {"clock", required_argument, NULL, 'k'}, {"ankle", required_argument, NULL, 'a'},
-        {"set", required_argument, NULL, 's'},   {"command-from", required_argument, NULL, 'm'},
-        {"fifo", required_argument, NULL, 'f'},  {"command-key", required_argument, NULL, 'y'},
-        {"lcm-from-network", no_argument, NULL, 'n'}, {"help", no_argument, NULL, 'h'},
-        {NULL, 0, NULL, 0}};
+    static const struct option known[] = {{"can", required_argument, NULL, 'c'},
+                                          {"lcm", required_argument, NULL, 'l'},
+                                          {"clock", required_argument, NULL, 'k'},
+                                          {"ankle", required_argument, NULL, 'a'},
+                                          {"set", required_argument, NULL, 's'},
+                                          {"command-from", required_argument, NULL, 'm'},
+                                          {"fifo", required_argument, NULL, 'f'},
+                                          {"command-key", required_argument, NULL, 'y'},
+                                          {"lcm-from-network", no_argument, NULL, 'n'},
+                                          {"help", no_argument, NULL, 'h'},
+                                          {NULL, 0, NULL, 0}};
     *options = (saddle_options_t){
         .can = "auto",
         .lcm = DEFAULT_LCM,

@@ -6,8 +6,8 @@
 #include "inbox.h"
 
 typedef struct {
-    const char *can; /**< as saddle_bus_open() takes it */
-    const char *lcm; /**< an LCM URL; NULL: no LCM */
+    const char *can;       /**< as saddle_bus_open() takes it */
+    const char *lcm;       /**< an LCM URL; NULL: no LCM */
     bool lcm_from_network; /**< commands by LCM from other machines count too */
     bool lockstep;
     saddle_source_t command_from; /**< NONE: the first that commands */

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 typedef struct {
-    int fifo_priority;  /**< 0: the ordinary scheduler */
+    int fifo_priority; /**< 0: the ordinary scheduler */
     bool memory_locked;
 } saddle_realtime_t;
 

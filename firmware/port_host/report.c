@@ -123,12 +123,13 @@ void saddle_report_print(const saddle_report_t *report)
     const saddle_wire_receiver_t *receiver = &inbox->receiver;
     printf("%" PRIu32 " ticks, %" PRIu32 " late, %" PRIu32 " missed; frames: %" PRIu32
            " accepted, rejected %" PRIu32 " bad CRC, %" PRIu32 " bad counter, %" PRIu32
-           " bad version, %" PRIu32 " bad code, %" PRIu32 " malformed; commands: %" PRIu32 " applied, %" PRIu32
-           " unusable, %" PRIu32 " ignored, %" PRIu32 " from other machines; not sent: %" PRIu32 " frames without room, %" PRIu32
+           " bad version, %" PRIu32 " bad code, %" PRIu32 " malformed; commands: %" PRIu32
+           " applied, %" PRIu32 " unusable, %" PRIu32 " ignored, %" PRIu32
+           " from other machines; not sent: %" PRIu32 " frames without room, %" PRIu32
            " without link, %" PRIu64 " LCM messages\n",
            timing->ticks, timing->late_ticks, timing->missed_ticks, receiver->accepted,
            receiver->bad_crc, receiver->bad_counter, receiver->bad_version, receiver->bad_code,
-           receiver->malformed,
-           inbox->commands_obeyed, inbox->commands_unusable, inbox->commands_ignored,
-           inbox->commands_foreign, report->bus->no_room, report->bus->no_link, report->lcm->not_sent);
+           receiver->malformed, inbox->commands_obeyed, inbox->commands_unusable,
+           inbox->commands_ignored, inbox->commands_foreign, report->bus->no_room,
+           report->bus->no_link, report->lcm->not_sent);
 }

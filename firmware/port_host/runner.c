@@ -38,15 +38,15 @@ static void reject_foreign_command(saddle_inbox_t *inbox, struct in_addr source)
     if (inbox->commands_foreign++ == 0 &&
         inet_ntop(AF_INET, &source, address, sizeof address) != NULL) {
         saddle_announce("command by LCM from %s rejected: only this machine may command; "
-                        "--lcm-from-network accepts others", address);
+                        "--lcm-from-network accepts others",
+                        address);
     }
 }
 
 static void take_lcm_command(saddle_runner_t *runner, const saddle_lcm_arrival_t *arrival,
                              bool usable)
 {
-    saddle_inbox_take_command(&runner->inbox, SADDLE_SOURCE_LCM,
-                              usable ? &arrival->command : NULL,
+    saddle_inbox_take_command(&runner->inbox, SADDLE_SOURCE_LCM, usable ? &arrival->command : NULL,
                               arrival_us(runner, arrival->waited_us));
 }
 
@@ -58,9 +58,7 @@ static void take_lcm_commands(saddle_runner_t *runner)
         switch (saddle_lcm_commands_receive(runner->lcm_commands_fd, &arrival)) {
         case SADDLE_LCM_COMMAND: take_lcm_command(runner, &arrival, true); break;
         case SADDLE_LCM_JUNK: take_lcm_command(runner, &arrival, false); break;
-        case SADDLE_LCM_FOREIGN:
-            reject_foreign_command(&runner->inbox, arrival.source);
-            break;
+        case SADDLE_LCM_FOREIGN: reject_foreign_command(&runner->inbox, arrival.source); break;
         default: return;
         }
     }

@@ -19,7 +19,7 @@ typedef struct {
     saddle_bus_t *bus;
     saddle_lcm_port_t *lcm;
     int lcm_commands_fd; /**< -1: LCM cannot command */
-    int stop_fd; /**< readable when the loop must end */
+    int stop_fd;         /**< readable when the loop must end */
     bool lockstep;
     saddle_context_t context;
     saddle_inbox_t inbox;

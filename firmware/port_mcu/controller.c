@@ -24,9 +24,8 @@ static bool is_lockstep_due(const saddle_controller_t *controller)
 static void take_frames(saddle_controller_t *controller)
 {
     saddle_can_frame_t frame;
-    for (uint32_t i = 0; i < SADDLE_CAN_QUEUE && !is_lockstep_due(controller) &&
-                         saddle_can_receive(&frame);
-         ++i) {
+    for (uint32_t i = 0;
+         i < SADDLE_CAN_QUEUE && !is_lockstep_due(controller) && saddle_can_receive(&frame); ++i) {
         saddle_inbox_take_frame(&controller->inbox, frame.id, frame.data, frame.length,
                                 controller->lockstep ? lockstep_us(controller) : frame.came_us);
     }

@@ -11,7 +11,7 @@
 typedef enum {
     SADDLE_SLCAN_NOTHING, /**< the line goes on, or says nothing that matters here */
     SADDLE_SLCAN_FRAME,
-    SADDLE_SLCAN_CLOSE,   /**< `C`: the other side leaves */
+    SADDLE_SLCAN_CLOSE,    /**< `C`: the other side leaves */
     SADDLE_SLCAN_MALFORMED /**< no frame, or one that is not classic data with 11 bits */
 } saddle_slcan_event_t;
 

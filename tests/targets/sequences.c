@@ -105,8 +105,7 @@ static void new_body(sequence_t *sequence)
 {
     const float height_m = random_in(sequence, 1.5f, 1.95f);
     sequence->config = saddle_config_default(height_m, random_in(sequence, 45.0f, 110.0f));
-    sequence->config.ankle =
-        (saddle_ankle_t)(random_bits(sequence) % (uint32_t)SADDLE_ANKLE_COUNT);
+    sequence->config.ankle = (saddle_ankle_t)(random_bits(sequence) % (uint32_t)SADDLE_ANKLE_COUNT);
     if (hostile(sequence)) {
         spoil_config(sequence);
     }

@@ -36,9 +36,7 @@ bool __wrap_saddle_settings_read(const uint32_t *page, saddle_config_t *config, 
 void __wrap_mps2_sleep(void);
 
 /** QEMU 7.2 counts twice what is slept under `-icount sleep=off`, and the watchdog's time with it. */
-void __wrap_mps2_sleep(void)
-{
-}
+void __wrap_mps2_sleep(void) {}
 
 static void finish(const char *words, int status)
 {

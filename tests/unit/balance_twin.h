@@ -64,8 +64,12 @@ static inline point_t twin_nearest_border(const twin_base_t *base, point_t p)
     const point_t candidates[] = {
         {distance > 0.0 ? base->radius * s.x / distance : base->radius,
          distance > 0.0 ? base->radius * s.y / distance : 0.0},
-        {base->depth, s.y}, {-base->depth, s.y},
-        {base->depth, edge}, {base->depth, -edge}, {-base->depth, edge}, {-base->depth, -edge},
+        {base->depth, s.y},
+        {-base->depth, s.y},
+        {base->depth, edge},
+        {base->depth, -edge},
+        {-base->depth, edge},
+        {-base->depth, -edge},
     };
     point_t best = s;
     double least = HUGE_VAL;

@@ -7,16 +7,16 @@
 
 typedef enum { FLOATS, OTHER } kind_t;
 
-#define FIELD(path, kind) {offsetof(saddle_output_t, path), sizeof(((saddle_output_t *)0)->path), kind}
-#define SCORES(scores)                                                                           \
-    FIELD(scores.valid, OTHER), FIELD(scores.v_comp_m_s, FLOATS), FIELD(scores.s_pend, FLOATS),  \
-        FIELD(scores.s_jump, FLOATS), FIELD(scores.s_sw, FLOATS),                                \
-        FIELD(scores.mos_com_m, FLOATS), FIELD(scores.mos_xcom_m, FLOATS),                       \
-        FIELD(scores.gravity_n, FLOATS), FIELD(scores.excess_stop_j, FLOATS),                    \
-        FIELD(scores.can_stop, OTHER), FIELD(scores.paper_stable, OTHER),                        \
-        FIELD(scores.xcom_m, FLOATS),                                                            \
-        FIELD(scores.bos.centre_m, FLOATS), FIELD(scores.bos.axis_x, FLOATS),                    \
-        FIELD(scores.bos.radius_m, FLOATS), FIELD(scores.bos.half_depth_m, FLOATS),              \
+#define FIELD(path, kind) \
+    {offsetof(saddle_output_t, path), sizeof(((saddle_output_t *)0)->path), kind}
+#define SCORES(scores)                                                                             \
+    FIELD(scores.valid, OTHER), FIELD(scores.v_comp_m_s, FLOATS), FIELD(scores.s_pend, FLOATS),    \
+        FIELD(scores.s_jump, FLOATS), FIELD(scores.s_sw, FLOATS), FIELD(scores.mos_com_m, FLOATS), \
+        FIELD(scores.mos_xcom_m, FLOATS), FIELD(scores.gravity_n, FLOATS),                         \
+        FIELD(scores.excess_stop_j, FLOATS), FIELD(scores.can_stop, OTHER),                        \
+        FIELD(scores.paper_stable, OTHER), FIELD(scores.xcom_m, FLOATS),                           \
+        FIELD(scores.bos.centre_m, FLOATS), FIELD(scores.bos.axis_x, FLOATS),                      \
+        FIELD(scores.bos.radius_m, FLOATS), FIELD(scores.bos.half_depth_m, FLOATS),                \
         FIELD(scores.bos.defined, OTHER)
 
 static const struct {

@@ -21,7 +21,8 @@ void tearDown(void) {}
 static saddle_quarter_t quarter_at(float speed)
 {
     const float length = (float)(0.1802 * (double)speed + 0.1351);
-    return saddle_quarter(model_of(&config), SADDLE_LEFT, length, saddle_step_width_m(model_of(&config), speed), speed);
+    return saddle_quarter(model_of(&config), SADDLE_LEFT, length,
+                          saddle_step_width_m(model_of(&config), speed), speed);
 }
 
 static saddle_transition_t transition_at(float speed, double heel_strike_deg)
@@ -98,7 +99,8 @@ static void test_profiles_are_the_equations_and_rates_their_derivatives(void)
                                   ankle.leg_length_m);
         const double h = 1e-6;
         const double rate = (leg_length(&transition, (double)t + h, before) -
-                             leg_length(&transition, (double)t - h, before)) / (2 * h);
+                             leg_length(&transition, (double)t - h, before)) /
+                            (2 * h);
         TEST_ASSERT_DOUBLE_WITHIN(2e-6, rate, ankle.leg_rate_m_s); /* below 1 m/s; t is a float */
     }
 }
@@ -165,7 +167,8 @@ static void test_cycloid_has_the_human_amplitude_and_its_slope(void)
         const double excursion = 0.02656 * (double)speed + 0.002575;
         for (int k = -20; k <= 20; k++) {
             const double angle = 0.025 * PI * k;
-            const saddle_sample_t height = saddle_cycloid(model_of(&config), &quarter, saddle_sin_cos((float)angle));
+            const saddle_sample_t height =
+                saddle_cycloid(model_of(&config), &quarter, saddle_sin_cos((float)angle));
             const double z = via_point - 0.5 * excursion * (1.0 - cos(2.0 * angle));
             const double slope =
                 -excursion * sin(2.0 * angle) * 0.5 * PI / (double)quarter.length_m;
@@ -189,7 +192,8 @@ static void test_ankle_angle_gives_the_leg_its_length(void)
         bool limited = true;
         const saddle_ankle_state_t off = ankle_for(leg, true, &limited);
         const double chord = 2.0 * 0.1 * sin(0.5 * (double)off.toe_off_rad);
-        TEST_ASSERT_DOUBLE_WITHIN(2 * FLOAT_TOLERANCE, (double)leg - (double)body.pendulum_m, chord);
+        TEST_ASSERT_DOUBLE_WITHIN(2 * FLOAT_TOLERANCE, (double)leg - (double)body.pendulum_m,
+                                  chord);
         ASSERT_SAME_FLOAT(0.0f, off.heel_strike_rad);
         ASSERT_SAME_FLOAT(0.0f, off.knee_flexion_m);
         TEST_ASSERT_FALSE(limited);
@@ -203,8 +207,7 @@ static void test_ankle_angle_gives_the_leg_its_length(void)
 static void test_leg_out_of_the_ankle_s_range_flexes_the_knee_or_is_said(void)
 {
     bool limited = true;
-    const saddle_ankle_state_t bent =
-        ankle_for(body.pendulum_m - 0.003f, true, &limited);
+    const saddle_ankle_state_t bent = ankle_for(body.pendulum_m - 0.003f, true, &limited);
     TEST_ASSERT_FALSE(limited);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.003, bent.knee_flexion_m);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, bent.toe_off_rad);

@@ -50,8 +50,13 @@ static double twin_margin_of(twin_t *twin, const saddle_measurement_t *seen, dou
     const saddle_vec2_t left = seen->foot[SADDLE_LEFT].cop_m;
     const saddle_vec2_t right = seen->foot[SADDLE_RIGHT].cop_m;
     if (!twin->begun) {
-        *twin = (twin_t){.vx = vx, .vy = vy, .height = z, .square = twin->square,
-                         .watched = twin->watched, .walked = twin->walked, .last_height = z,
+        *twin = (twin_t){.vx = vx,
+                         .vy = vy,
+                         .height = z,
+                         .square = twin->square,
+                         .watched = twin->watched,
+                         .walked = twin->walked,
+                         .last_height = z,
                          .begun = true};
     } else {
         twin->same_height += dt_s;
@@ -77,8 +82,8 @@ static double twin_margin_of(twin_t *twin, const saddle_measurement_t *seen, dou
     twin->vy += mean_share * (vy - twin->vy);
     twin->height += mean_share * (z - twin->height);
     if (margin > 0.15 && fabs(twin->vx) > 0.1) {
-        const double square = (unusual * unusual + twin->climb * twin->climb) /
-                              (GRAVITY * twin->height);
+        const double square =
+            (unusual * unusual + twin->climb * twin->climb) / (GRAVITY * twin->height);
         const double ripple_share = share(&twin->walked, 4.0, dt_s);
         const double counted = fmax(fmin(square, 4.0 * twin->square), 0.005 * 0.005);
         twin->square += ripple_share * (counted - twin->square);

@@ -6,7 +6,7 @@
 #include <errno.h>
 #include <unity.h>
 
-static int send_error;                /**< 0: frames are sent */
+static int send_error; /**< 0: frames are sent */
 static int receive_error;
 static saddle_bus_received_t next[4]; /**< what comes, up to the first EMPTY */
 static size_t taken;
@@ -68,9 +68,7 @@ void setUp(void)
     TEST_ASSERT_EQUAL_INT(SADDLE_LINK_UP, bus.link.state);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void hear(saddle_bus_received_t first, saddle_bus_received_t second)
 {

@@ -21,9 +21,7 @@ void setUp(void)
     saddle_cmac_prepare(&key, KEY);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void test_subkeys(void)
 {

@@ -7,7 +7,10 @@
 
 static saddle_config_t config;
 
-void setUp(void) { config = paper_config(); }
+void setUp(void)
+{
+    config = paper_config();
+}
 
 void tearDown(void) {}
 
@@ -16,7 +19,8 @@ static const float SPEEDS[] = {0.01f, 0.3f, 0.7f, 1.0f, 1.2f, 1.6f, 1.9f};
 static saddle_quarter_t quarter_at(float speed, saddle_side_t stance)
 {
     const float length = (float)(0.1802 * (double)speed + 0.1351);
-    return saddle_quarter(model_of(&config), stance, length, saddle_step_width_m(model_of(&config), speed), speed);
+    return saddle_quarter(model_of(&config), stance, length,
+                          saddle_step_width_m(model_of(&config), speed), speed);
 }
 
 static void test_path_is_the_equation_s(void)
@@ -60,8 +64,10 @@ static void test_phase_ends_with_the_quarter_and_is_known_at_via_points(void)
     const struct {
         float share;
         saddle_sin_cos_t phase;
-    } table[] = {{0.0f, SADDLE_PHASE_FOOT},      {1.0f, SADDLE_PHASE_LANDING},
-                 {2.0f, SADDLE_PHASE_LANDING},   {-1.0f, SADDLE_PHASE_LANDED},
+    } table[] = {{0.0f, SADDLE_PHASE_FOOT},
+                 {1.0f, SADDLE_PHASE_LANDING},
+                 {2.0f, SADDLE_PHASE_LANDING},
+                 {-1.0f, SADDLE_PHASE_LANDED},
                  {-1.01f, SADDLE_PHASE_LANDED}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         const saddle_sin_cos_t phase =

@@ -3,7 +3,10 @@
 
 static saddle_config_t config;
 
-void setUp(void) { config = paper_config(); }
+void setUp(void)
+{
+    config = paper_config();
+}
 
 void tearDown(void) {}
 
@@ -83,8 +86,14 @@ static void test_every_field_out_of_range_is_named(void)
 {
     for (size_t i = 0; i < field_count(); i++) {
         const saddle_config_field_t *field = saddle_config_field(i);
-        const float bad[] = {nextafterf(field->min, -INFINITY), nextafterf(field->max, INFINITY),
-                             -1.0e30f, 1.0e30f, NAN, -NAN, INFINITY, -INFINITY};
+        const float bad[] = {nextafterf(field->min, -INFINITY),
+                             nextafterf(field->max, INFINITY),
+                             -1.0e30f,
+                             1.0e30f,
+                             NAN,
+                             -NAN,
+                             INFINITY,
+                             -INFINITY};
         for (size_t k = 0; k < COUNT_OF(bad); k++) {
             config = paper_config();
             *config_field(&config, i) = bad[k];

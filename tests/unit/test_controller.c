@@ -141,8 +141,7 @@ static void test_a_tick_that_is_refused_does_not_kick_the_watchdog(void)
 static void test_what_saddle_init_returns_is_told(void)
 {
     config.body_mass_kg = -1.0f;
-    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_CONFIG,
-                          saddle_controller_init(&controller, &config, false));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_CONFIG, saddle_controller_init(&controller, &config, false));
     timer(0);
     TEST_ASSERT_EQUAL_UINT32(0, kicks);
 }

@@ -343,17 +343,10 @@ static const struct {
     const char *name;
     void (*run)(void);
 } TESTS[] = {
-    {"sin", test_sin},
-    {"cos", test_cos},
-    {"sin_cos", test_sin_cos},
-    {"asin", test_asin},
-    {"erf", test_erf},
-    {"erf_saturation", test_erf_saturation},
-    {"exp", test_exp},
-    {"min_jerk", test_min_jerk},
-    {"min_jerk_slope", test_min_jerk_slope},
-    {"clamp", test_clamp},
-    {"in_range", test_in_range},
+    {"sin", test_sin},     {"cos", test_cos},           {"sin_cos", test_sin_cos},
+    {"asin", test_asin},   {"erf", test_erf},           {"erf_saturation", test_erf_saturation},
+    {"exp", test_exp},     {"min_jerk", test_min_jerk}, {"min_jerk_slope", test_min_jerk_slope},
+    {"clamp", test_clamp}, {"in_range", test_in_range},
 };
 
 int main(int argc, char **argv)

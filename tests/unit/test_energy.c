@@ -37,8 +37,7 @@ static float excess_stop(const posture_t *posture)
     const saddle_bos_t bos = saddle_bos(posture->cop_m, config.cop_range_m, config.bos_factor);
     float excess_j;
     const saddle_support_t support = support_of(posture->cop_m, &bos, posture->state.com_m);
-    TEST_ASSERT_TRUE(
-        saddle_excess_stop_j(model_of(&config), &support, &posture->state, &excess_j));
+    TEST_ASSERT_TRUE(saddle_excess_stop_j(model_of(&config), &support, &posture->state, &excess_j));
     return excess_j;
 }
 
@@ -100,8 +99,8 @@ static void test_excess_to_stop_by_hand(void)
     const posture_t posture = {.cop_m = {{0.0f, 0.3f}, {0.0f, -0.3f}},
                                .state = {.velocity_m_s = {0.3f, 0.0f}}};
     const double weight = 63.3 * 9.80665;
-    const double expected = 0.5 * 63.3 * 0.09 +
-                            weight * (sqrt(1.0203 * 1.0203 - 0.09) - sqrt(1.0203 * 1.0203 - 0.10));
+    const double expected =
+        0.5 * 63.3 * 0.09 + weight * (sqrt(1.0203 * 1.0203 - 0.09) - sqrt(1.0203 * 1.0203 - 0.10));
     TEST_ASSERT_DOUBLE_WITHIN(ENERGY_TOLERANCE, expected, excess_stop(&posture));
 }
 
@@ -212,8 +211,7 @@ static void test_no_energy_is_told_where_no_leg_reaches(void)
         const saddle_support_t support = support_of(table[i].cop_m, &bos, state->com_m);
         float stop_j = NAN;
         float track_j = NAN;
-        TEST_ASSERT_FALSE(
-            saddle_excess_stop_j(model_of(&config), &support, state, &stop_j));
+        TEST_ASSERT_FALSE(saddle_excess_stop_j(model_of(&config), &support, state, &stop_j));
         TEST_ASSERT_FALSE(
             saddle_excess_track_j(model_of(&config), &support, state, state, &track_j));
         ASSERT_SAME_FLOAT(0.0f, stop_j);

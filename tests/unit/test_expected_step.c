@@ -27,8 +27,7 @@ typedef struct {
 static float grown_after_m(deviation_t deviation, float time_s)
 {
     const saddle_growth_t growth = saddle_growth(model_of(&config), time_s, false);
-    const float xcom_m =
-        deviation.com_m + deviation.velocity_m_s / body.natural_frequency_rad_s;
+    const float xcom_m = deviation.com_m + deviation.velocity_m_s / body.natural_frequency_rad_s;
     return saddle_grown_m(deviation.com_m, xcom_m, &growth);
 }
 
@@ -86,7 +85,8 @@ static void test_steady_step_is_the_paper_s_walk_at_every_phase(void)
             const saddle_step_t step = steady_step(stance, v);
             for (int k = -20; k <= 20; k++) {
                 const double x = half * k / 20.0;
-                const saddle_expectation_t expected = saddle_expect(model_of(&config), &step, (float)x);
+                const saddle_expectation_t expected =
+                    saddle_expect(model_of(&config), &step, (float)x);
                 assert_on_path(stance, v, step_width(v), half, x, &expected.now);
                 assert_on_path(stance, v, step_width(v), half, half, &expected.landing);
                 TEST_ASSERT_DOUBLE_WITHIN(2e-6, (half - x) / v, expected.time_s);
@@ -118,8 +118,7 @@ static void assert_plan_fulfils(const saddle_context_t *context, uint64_t now_us
     const saddle_step_t step = step_of(now);
     const saddle_expectation_t expected =
         saddle_expect(model_of(&config), &step, now->com_m.x - stance->x);
-    TEST_ASSERT_DOUBLE_WITHIN(2e-6, (double)now->com_m.y - (double)stance->y,
-                              expected.now.com_m.y);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-6, (double)now->com_m.y - (double)stance->y, expected.now.com_m.y);
     TEST_ASSERT_DOUBLE_WITHIN(2e-6, now->com_velocity_m_s.y, expected.now.velocity_m_s.y);
     TEST_ASSERT_DOUBLE_WITHIN(2e-6, now->time_to_toe_off_s, expected.time_s);
 
@@ -187,8 +186,10 @@ static void test_com_outside_the_step_is_at_its_nearer_end(void)
     const saddle_step_t step = steady_step(SADDLE_LEFT, v);
     const float far_m[] = {0.01f, 0.3f, 2.5f};
     for (size_t i = 0; i < COUNT_OF(far_m); i++) {
-        const saddle_expectation_t behind = saddle_expect(model_of(&config), &step, (float)-half - far_m[i]);
-        const saddle_expectation_t beyond = saddle_expect(model_of(&config), &step, (float)half + far_m[i]);
+        const saddle_expectation_t behind =
+            saddle_expect(model_of(&config), &step, (float)-half - far_m[i]);
+        const saddle_expectation_t beyond =
+            saddle_expect(model_of(&config), &step, (float)half + far_m[i]);
         assert_on_path(SADDLE_LEFT, v, step_width(v), half, -half, &behind.now);
         assert_on_path(SADDLE_LEFT, v, step_width(v), half, half, &beyond.now);
         TEST_ASSERT_DOUBLE_WITHIN(2e-6, 2.0 * half / v, behind.time_s);
@@ -215,11 +216,16 @@ static void test_step_that_ends_beside_the_stance_foot_is_finite(void)
                                 .width_behind_m = 0.2f,
                                 .landing_m = {0.0f, -0.2f}};
     for (int k = -10; k <= 10; k++) {
-        const saddle_expectation_t expected = saddle_expect(model_of(&config), &step, 0.05f * (float)k);
-        const float numbers[] = {expected.now.com_m.x,        expected.now.com_m.y,
-                                 expected.now.velocity_m_s.x, expected.now.velocity_m_s.y,
-                                 expected.landing.com_m.x,    expected.landing.com_m.y,
-                                 expected.landing.velocity_m_s.y, expected.time_s};
+        const saddle_expectation_t expected =
+            saddle_expect(model_of(&config), &step, 0.05f * (float)k);
+        const float numbers[] = {expected.now.com_m.x,
+                                 expected.now.com_m.y,
+                                 expected.now.velocity_m_s.x,
+                                 expected.now.velocity_m_s.y,
+                                 expected.landing.com_m.x,
+                                 expected.landing.com_m.y,
+                                 expected.landing.velocity_m_s.y,
+                                 expected.time_s};
         for (size_t i = 0; i < COUNT_OF(numbers); i++) {
             TEST_ASSERT_DOUBLE_WITHIN(1.0, 0.0, numbers[i]);
         }

@@ -19,7 +19,8 @@ static void test_speed_is_exact_to_its_unit(void)
 {
     uint32_t state = 5;
     for (int i = 0; i < 100000; i++) {
-        const float value = random_in(&state, -4.0f, 4.0f) / (float)(1u << (random_bits(&state) % 24u));
+        const float value =
+            random_in(&state, -4.0f, 4.0f) / (float)(1u << (random_bits(&state) % 24u));
         const saddle_fixed_t speed = saddle_speed_from_m_s(value);
         TEST_ASSERT_DOUBLE_WITHIN(1.0, (double)value * UNITS, (double)speed);
         TEST_ASSERT_DOUBLE_WITHIN(1.9e-9 + 6e-8 * fabs((double)value), (double)value,
@@ -37,7 +38,8 @@ static void test_position_is_exact_to_a_picometre(void)
 {
     uint32_t state = 6;
     for (int i = 0; i < 100000; i++) {
-        const float value = random_in(&state, -2.0f, 2.0f) / (float)(1u << (random_bits(&state) % 24u));
+        const float value =
+            random_in(&state, -2.0f, 2.0f) / (float)(1u << (random_bits(&state) % 24u));
         const saddle_fixed_t position = saddle_position_from_m(value);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, (double)value, metres(position));
         /* Three roundings: of the integer, of the unit and of their product. */
@@ -83,7 +85,8 @@ static void test_change_is_rate_times_time(void)
 {
     uint32_t state = 9;
     for (int i = 0; i < 100000; i++) {
-        const float wanted = random_in(&state, -15.9f, 15.9f) / (float)(1u << (random_bits(&state) % 8u));
+        const float wanted =
+            random_in(&state, -15.9f, 15.9f) / (float)(1u << (random_bits(&state) % 8u));
         const float rate = (float)(int32_t)(wanted * 134217728.0f) / 134217728.0f;
         const uint32_t dt_us = random_bits(&state) % 10000001u;
         const double expected = (double)rate * dt_us * 1e-6;
@@ -112,7 +115,8 @@ static void test_any_bits_give_a_number_within_the_range(void)
     uint32_t state = 11;
     for (int i = 0; i < 100000; i++) {
         const float value = float_of_bits(random_bits(&state));
-        const int64_t bits = (int64_t)random_bits(&state) * 2147483648 + (int64_t)random_bits(&state);
+        const int64_t bits =
+            (int64_t)random_bits(&state) * 2147483648 + (int64_t)random_bits(&state);
         const saddle_fixed_t any = random_bits(&state) % 2u == 0u ? bits : -bits;
         const uint32_t dt_us = random_bits(&state);
         const saddle_fixed_t position = saddle_position_from_m(value);

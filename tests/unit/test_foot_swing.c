@@ -16,9 +16,11 @@ static saddle_swing_state_t foot_at(const saddle_swing_t *line, float progress, 
 
 void setUp(void)
 {
-    swing = (saddle_swing_t){
-        .lift_progress = 0.0f, .land_progress = 1.0f, .line_y_m = -0.1f, .clearance_m = 0.05f,
-        .path_width_m = 0.1f};
+    swing = (saddle_swing_t){.lift_progress = 0.0f,
+                             .land_progress = 1.0f,
+                             .line_y_m = -0.1f,
+                             .clearance_m = 0.05f,
+                             .path_width_m = 0.1f};
 }
 
 void tearDown(void) {}
@@ -33,7 +35,8 @@ static void test_foot_lies_on_the_line_through_stance_and_com(void)
         swing.path_width_m = -swing.line_y_m;
         const saddle_swing_state_t foot = foot_at(&swing, 0.5f, x, lateral, 0.0f, 1.0f);
         const double expected = (double)swing.line_y_m * (double)x / (double)lateral.value;
-        TEST_ASSERT_DOUBLE_WITHIN(2e-6, expected, foot.position_m.x); /* up to 15 m: steps of 1e-6 */
+        TEST_ASSERT_DOUBLE_WITHIN(2e-6, expected,
+                                  foot.position_m.x); /* up to 15 m: steps of 1e-6 */
         ASSERT_SAME_FLOAT(swing.line_y_m, foot.position_m.y);
         TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, foot.velocity_m_s.x);
     }
@@ -43,7 +46,8 @@ static void test_foot_passes_behind_beside_and_ahead(void)
 {
     const saddle_sample_t midway = {-0.05f, 0.0f};
     const saddle_sample_t beside = {-0.037f, 0.0f};
-    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.7, saddle_swing_line(&swing, -0.35f, midway).value);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.7,
+                              saddle_swing_line(&swing, -0.35f, midway).value);
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, saddle_swing_line(&swing, 0.0f, beside).value);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.7, saddle_swing_line(&swing, 0.35f, midway).value);
 }

@@ -189,17 +189,17 @@ static void test_landings_that_are_refused_change_nothing(void)
         bool taken;
     } table[] = {
         {false, 0, 0.05f, 0.0f, true},
-        {false, 150000, 0.05f, 0.0f, true},  /* half of the quarter takes 158 ms */
+        {false, 150000, 0.05f, 0.0f, true}, /* half of the quarter takes 158 ms */
         {false, 160000, 0.05f, 0.0f, false},
-        {true, 70000, 0.05f, 0.0f, true},    /* a last swing is in the air for half as long */
+        {true, 70000, 0.05f, 0.0f, true}, /* a last swing is in the air for half as long */
         {true, 85000, 0.05f, 0.0f, false},
         {false, 0, -0.29f, 0.0f, true},
-        {false, 0, -0.30f, 0.0f, false},     /* CoM within 2 cm of the foot */
+        {false, 0, -0.30f, 0.0f, false}, /* CoM within 2 cm of the foot */
         {false, 0, 0.16f, 0.0f, true},
-        {false, 0, 0.18f, 0.0f, false},      /* beyond reach */
-        {false, 0, 0.0f, 0.11f, true},       /* a right foot: feet 2.3 cm apart */
+        {false, 0, 0.18f, 0.0f, false}, /* beyond reach */
+        {false, 0, 0.0f, 0.11f, true},  /* a right foot: feet 2.3 cm apart */
         {false, 0, 0.0f, 0.12f, false},
-        {false, 0, 0.0f, -0.30f, true},      /* 0.433 of 0.44 m apart */
+        {false, 0, 0.0f, -0.30f, true}, /* 0.433 of 0.44 m apart */
         {false, 0, 0.0f, -0.31f, false},
     };
     for (size_t i = 0; i < COUNT_OF(table); i++) {

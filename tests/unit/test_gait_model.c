@@ -22,7 +22,8 @@ static double double_of(saddle_fixed_t position)
 
 static saddle_quarter_t quarter_at(float speed)
 {
-    return saddle_quarter(model_of(&config), SADDLE_LEFT, 0.3f, saddle_step_width_m(model_of(&config), speed), speed);
+    return saddle_quarter(model_of(&config), SADDLE_LEFT, 0.3f,
+                          saddle_step_width_m(model_of(&config), speed), speed);
 }
 
 static void test_body_constants(void)
@@ -38,15 +39,17 @@ static void test_step_width_is_piecewise_with_the_ends_in_the_middle_piece(void)
 {
     static const struct {
         double speed, width;
-    } table[] = {{-1.0, 0.22},    {0.0, 0.22},     {0.5, 0.22}, {0.7, 0.19664},
-                 {1.0, 0.1328},   {1.2, 0.10},     {5.0, 0.10}};
+    } table[] = {{-1.0, 0.22},  {0.0, 0.22}, {0.5, 0.22}, {0.7, 0.19664},
+                 {1.0, 0.1328}, {1.2, 0.10}, {5.0, 0.10}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, table[i].width,
                                   saddle_step_width_m(model_of(&config), (float)table[i].speed));
     }
-    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.21792, saddle_step_width_m(model_of(&config), 0.6f));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.21792,
+                              saddle_step_width_m(model_of(&config), 0.6f));
     ASSERT_SAME_FLOAT(0.22f, saddle_step_width_m(model_of(&config), nextafterf(0.6f, 0.0f)));
-    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.11152, saddle_step_width_m(model_of(&config), 1.1f));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.11152,
+                              saddle_step_width_m(model_of(&config), 1.1f));
     ASSERT_SAME_FLOAT(0.10f, saddle_step_width_m(model_of(&config), nextafterf(1.1f, 2.0f)));
 }
 
@@ -56,8 +59,9 @@ static void test_half_step_is_the_regression_s_to_the_nanometre(void)
         const saddle_fixed_t fixed = saddle_speed_from_m_s(speed);
         const double slope = (double)config.half_step_slope_s;
         const double expected = slope * (double)speed + (double)config.half_step_intercept_m;
-        TEST_ASSERT_DOUBLE_WITHIN(2e-10, expected, /* the slope is counted in 2^-31 s */
-                                  double_of(saddle_half_step(model_of(&config), SADDLE_LEFT, fixed)));
+        TEST_ASSERT_DOUBLE_WITHIN(
+            2e-10, expected, /* the slope is counted in 2^-31 s */
+            double_of(saddle_half_step(model_of(&config), SADDLE_LEFT, fixed)));
         TEST_ASSERT_TRUE(saddle_half_step(model_of(&config), SADDLE_LEFT, fixed) ==
                          saddle_half_step(model_of(&config), SADDLE_RIGHT, fixed));
     }
@@ -76,7 +80,8 @@ static void test_quarter_at_the_paper_s_speeds(void)
         ASSERT_SAME_FLOAT(0.3f, quarter.length_m);
         TEST_ASSERT_EQUAL_INT(SADDLE_LEFT, quarter.stance);
     }
-    ASSERT_SAME_FLOAT(0.02f, saddle_quarter(model_of(&config), SADDLE_LEFT, 0.3f, 0.001f, 1.0f).width_m);
+    ASSERT_SAME_FLOAT(0.02f,
+                      saddle_quarter(model_of(&config), SADDLE_LEFT, 0.3f, 0.001f, 1.0f).width_m);
 }
 
 static void test_sides_have_their_own_step_length_and_width(void)
@@ -114,8 +119,7 @@ static void test_lateral_amplitude_is_tangency_below_half_a_metre_per_second(voi
 {
     const float slow[] = {0.01f, 0.318f, 0.5f};
     for (size_t i = 0; i < COUNT_OF(slow); i++) {
-        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.22 / PI,
-                                  quarter_at(slow[i]).amplitude_m);
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.22 / PI, quarter_at(slow[i]).amplitude_m);
     }
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.22 / (2.0 * PI * 0.55),
                               quarter_at(0.55f).amplitude_m);
@@ -162,7 +166,7 @@ static void test_feasible_speeds_lie_between_zero_and_the_ceiling(void)
     const struct {
         float speed;
         bool feasible;
-    } table[] = {{-1.0f, false},  {-0.0f, false}, {0.0f, false},  {1e-6f, true}, {1.9f, true},
+    } table[] = {{-1.0f, false},  {-0.0f, false},  {0.0f, false}, {1e-6f, true}, {1.9f, true},
                  {1.9345f, true}, {1.936f, false}, {3.0f, false}, {1e6f, false}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         TEST_ASSERT_EQUAL(table[i].feasible,

@@ -8,17 +8,17 @@ void setUp(void) {}
 void tearDown(void) {}
 
 /* Runs an assertion that must fail, and takes the failure back. */
-#define MUST_FAIL(assertion)                                     \
-    do {                                                         \
-        jmp_buf outer;                                           \
-        memcpy(outer, Unity.AbortFrame, sizeof outer);           \
-        volatile bool failed = true;                             \
-        if (TEST_PROTECT()) {                                    \
-            assertion;                                           \
-            failed = false;                                      \
-        }                                                        \
-        memcpy(Unity.AbortFrame, outer, sizeof outer);           \
-        Unity.CurrentTestFailed = 0;                             \
+#define MUST_FAIL(assertion)                                           \
+    do {                                                               \
+        jmp_buf outer;                                                 \
+        memcpy(outer, Unity.AbortFrame, sizeof outer);                 \
+        volatile bool failed = true;                                   \
+        if (TEST_PROTECT()) {                                          \
+            assertion;                                                 \
+            failed = false;                                            \
+        }                                                              \
+        memcpy(Unity.AbortFrame, outer, sizeof outer);                 \
+        Unity.CurrentTestFailed = 0;                                   \
         TEST_ASSERT_TRUE_MESSAGE(failed, "did not fail: " #assertion); \
     } while (0)
 

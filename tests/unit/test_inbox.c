@@ -14,9 +14,7 @@ void setUp(void)
     saddle_inbox_init(&inbox, SADDLE_SOURCE_NONE);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void expect_counts(uint32_t obeyed, uint32_t unusable, uint32_t ignored)
 {

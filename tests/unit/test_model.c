@@ -15,7 +15,8 @@ static saddle_config_t random_config(uint32_t *state)
 {
     saddle_config_t config;
     do {
-        config = saddle_config_default(random_in(state, 0.9f, 2.2f), random_in(state, 20.0f, 150.0f));
+        config =
+            saddle_config_default(random_in(state, 0.9f, 2.2f), random_in(state, 20.0f, 150.0f));
         config.cop_range_m = random_in(state, 0.05f, 0.2f);
         config.half_step_slope_s = random_in(state, 0.05f, 0.4f);
         config.half_step_intercept_m = random_in(state, 0.05f, 0.2f);
@@ -50,8 +51,8 @@ static void test_balance_coefficients(void)
         const double range = (double)config.cop_range_m;
         assert_near(pendulum, body->pendulum_m);
         assert_near(frequency, body->natural_frequency_rad_s);
-        assert_near((double)config.ankle_work_factor * (double)config.body_mass_kg * GRAVITY * range *
-                        range / pendulum,
+        assert_near((double)config.ankle_work_factor * (double)config.body_mass_kg * GRAVITY *
+                        range * range / pendulum,
                     body->ankle_work_j);
         assert_near(exp(frequency * horizon), body->horizon_growth);
         assert_near(exp(frequency * fmax(horizon - 0.1, 0.0)), body->horizon_free_growth);
@@ -97,7 +98,8 @@ static void test_times_in_microseconds(void)
         assert_near(1e6 * (double)config.command_max_age_s, body->command_max_age_us);
         assert_near(1e6 * (double)config.com_max_age_s, body->com_max_age_us);
         assert_near(1e6 * (double)config.foot_max_age_s, body->foot_max_age_us);
-        TEST_ASSERT_UINT32_WITHIN(1, (uint32_t)(1e6 * (double)config.tick_max_s), body->tick_max_us);
+        TEST_ASSERT_UINT32_WITHIN(1, (uint32_t)(1e6 * (double)config.tick_max_s),
+                                  body->tick_max_us);
         TEST_ASSERT_UINT32_WITHIN(1, (uint32_t)(1e6 * (double)config.shift_time_s), body->shift_us);
     }
 }

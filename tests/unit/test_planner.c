@@ -257,9 +257,9 @@ typedef struct {
 
 static ground_t on_ground(void)
 {
-    ground_t g = {.com = {absolute((double)plan.com_m.x), plan.com_m.y, plan.com_m.z},
-                  .velocity = {plan.com_velocity_m_s.x, plan.com_velocity_m_s.y,
-                               plan.com_velocity_m_s.z}};
+    ground_t g = {
+        .com = {absolute((double)plan.com_m.x), plan.com_m.y, plan.com_m.z},
+        .velocity = {plan.com_velocity_m_s.x, plan.com_velocity_m_s.y, plan.com_velocity_m_s.z}};
     for (int side = 0; side < 2; side++) {
         g.foot[side][0] = absolute((double)plan.foot_m[side].x);
         g.foot[side][1] = plan.foot_m[side].y;
@@ -520,9 +520,8 @@ static void test_start_stands_then_shifts_then_steps(void)
 
 static void measure(float left_x, float left_y, float right_x, float right_y)
 {
-    feet = (saddle_feet_t){.known = true,
-                           .cop_m = {{left_x, left_y}, {right_x, right_y}},
-                           .contact = {true, true}};
+    feet = (saddle_feet_t){
+        .known = true, .cop_m = {{left_x, left_y}, {right_x, right_y}}, .contact = {true, true}};
 }
 
 static void test_measured_feet_give_the_nearest_phase(void)
@@ -540,8 +539,8 @@ static void test_measured_feet_give_the_nearest_phase(void)
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, (double)table[i].left_x - (double)table[i].right_x,
                                   (double)plan.foot_m[SADDLE_LEFT].x -
                                       (double)plan.foot_m[SADDLE_RIGHT].x);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.2, (double)plan.foot_m[SADDLE_LEFT].y -
-                                                 (double)plan.foot_m[SADDLE_RIGHT].y);
+        TEST_ASSERT_DOUBLE_WITHIN(
+            1e-6, 0.2, (double)plan.foot_m[SADDLE_LEFT].y - (double)plan.foot_m[SADDLE_RIGHT].y);
         for (int k = 0; k < 800; k++) {
             smooth_millisecond(false);
         }
@@ -570,8 +569,10 @@ static void test_start_after_an_unmeasured_walk_takes_no_old_landing(void)
 
 static void test_feet_that_no_walk_can_start_from_are_said(void)
 {
-    static const float bad[][4] = {{0.0f, -0.1f, 0.0f, 0.1f},   {0.0f, 0.02f, 0.0f, -0.02f},
-                                   {1.0f, 0.1f, 0.0f, -0.1f},   {0.0f, 0.1f, 1.0f, -0.1f},
+    static const float bad[][4] = {{0.0f, -0.1f, 0.0f, 0.1f},
+                                   {0.0f, 0.02f, 0.0f, -0.02f},
+                                   {1.0f, 0.1f, 0.0f, -0.1f},
+                                   {0.0f, 0.1f, 1.0f, -0.1f},
                                    {0.0f, 0.3f, 0.0f, -0.3f}};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         stand(1.0f);
@@ -595,8 +596,8 @@ static void test_feet_that_no_walk_can_start_from_are_said(void)
 static void land_there(float dx, float dy)
 {
     feet = (saddle_feet_t){.known = true, .contact = {true, true}};
-    feet.cop_m[plan.support] = (saddle_vec2_t){planner.cycle.last_step_m.x + dx,
-                                               planner.cycle.last_step_m.y + dy};
+    feet.cop_m[plan.support] =
+        (saddle_vec2_t){planner.cycle.last_step_m.x + dx, planner.cycle.last_step_m.y + dy};
 }
 
 /* The last step lands up to 0.3 m short: what is left of the way may be too short to brake on. */
@@ -638,8 +639,8 @@ static void land_shifted(float dx, float dy)
 
 static void test_misplaced_landing_is_where_the_next_step_starts(void)
 {
-    static const float shifts[][2] = {{0.0f, 0.0f},  {0.06f, 0.0f}, {-0.06f, 0.0f},
-                                      {0.0f, 0.04f}, {0.03f, 0.03f}};
+    static const float shifts[][2] = {
+        {0.0f, 0.0f}, {0.06f, 0.0f}, {-0.06f, 0.0f}, {0.0f, 0.04f}, {0.03f, 0.03f}};
     for (size_t i = 0; i < 2 * COUNT_OF(shifts); i++) {
         const float *shift = shifts[i / 2];
         config.ankle = i % 2 == 0 ? SADDLE_ANKLE_ERF : SADDLE_ANKLE_CYCLOID;
@@ -757,8 +758,7 @@ static void test_sides_step_by_their_own_factors(void)
         const bool left = plan.support == (uint8_t)SADDLE_LEFT;
         TEST_ASSERT_DOUBLE_WITHIN(1e-7, (left ? 0.8 : 1.0) * 0.6306,
                                   (double)(plan.origin_x_nm - before) * 1e-9);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-7, left ? 0.0664 : -1.3 * 0.0664,
-                                  plan.foot_m[plan.support].y);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-7, left ? 0.0664 : -1.3 * 0.0664, plan.foot_m[plan.support].y);
     }
 }
 
@@ -845,11 +845,16 @@ static void test_usable_commands(void)
         saddle_command_t command;
         bool usable;
     } table[] = {
-        {{SADDLE_COMMAND_STAND, 0.0f, 0.0f}, true}, {{SADDLE_COMMAND_WALK, 1.2f, 0.1f}, true},
-        {{SADDLE_COMMAND_WALK, -5.0f, -1.0f}, true}, {{SADDLE_COMMAND_WALK, 1e6f, 1e6f}, true},
-        {{2, 1.2f, 0.1f}, false},                    {{255, 1.2f, 0.1f}, false},
-        {{SADDLE_COMMAND_WALK, NAN, 0.1f}, false},   {{SADDLE_COMMAND_WALK, 1.2f, NAN}, false},
-        {{SADDLE_COMMAND_STAND, NAN, NAN}, true},    {{SADDLE_COMMAND_WALK, INFINITY, 0.1f}, false},
+        {{SADDLE_COMMAND_STAND, 0.0f, 0.0f}, true},
+        {{SADDLE_COMMAND_WALK, 1.2f, 0.1f}, true},
+        {{SADDLE_COMMAND_WALK, -5.0f, -1.0f}, true},
+        {{SADDLE_COMMAND_WALK, 1e6f, 1e6f}, true},
+        {{2, 1.2f, 0.1f}, false},
+        {{255, 1.2f, 0.1f}, false},
+        {{SADDLE_COMMAND_WALK, NAN, 0.1f}, false},
+        {{SADDLE_COMMAND_WALK, 1.2f, NAN}, false},
+        {{SADDLE_COMMAND_STAND, NAN, NAN}, true},
+        {{SADDLE_COMMAND_WALK, INFINITY, 0.1f}, false},
         {{SADDLE_COMMAND_WALK, 1.2f, -INFINITY}, false},
     };
     for (size_t i = 0; i < COUNT_OF(table); i++) {

@@ -114,7 +114,13 @@ static void test_absurd_number_in_any_field_is_a_range_fault(void)
     field_t fields[FIELD_COUNT];
     list_fields(fields);
     for (size_t i = 0; i < FIELD_COUNT; i++) {
-        const float bad[] = {NAN, -NAN, INFINITY, -INFINITY, 1e30f, -1e30f, 3.4e38f,
+        const float bad[] = {NAN,
+                             -NAN,
+                             INFINITY,
+                             -INFINITY,
+                             1e30f,
+                             -1e30f,
+                             3.4e38f,
                              nextafterf(fields[i].min, -INFINITY),
                              nextafterf(fields[i].max, INFINITY)};
         for (size_t k = 0; k < COUNT_OF(bad); k++) {
@@ -200,8 +206,10 @@ static void test_frozen_com_is_seen_along_either_axis_from_two_centimetres_on(vo
 {
     const struct {
         float vx, vy;
-    } true_velocity[] = {{1.1f - 0.055f, 0.05f}, {1.1f + 0.055f, 0.05f},
-                         {1.1f, 0.05f - 0.055f}, {1.1f, 0.05f + 0.055f}};
+    } true_velocity[] = {{1.1f - 0.055f, 0.05f},
+                         {1.1f + 0.055f, 0.05f},
+                         {1.1f, 0.05f - 0.055f},
+                         {1.1f, 0.05f + 0.055f}};
     for (size_t i = 0; i < COUNT_OF(true_velocity); i++) {
         setUp();
         judge();
@@ -330,8 +338,7 @@ static void test_com_that_freezes_in_a_walk_stays_frozen_until_it_changes(void)
         int first = 0;
         for (int tick = 0; tick < start + 60; tick++) {
             walk_on(&walker, 0.8f);
-            measured.com.velocity_m_s.x =
-                tick < start ? 0.8f + 1e-3f * (float)(tick % 3) : 1.2f;
+            measured.com.velocity_m_s.x = tick < start ? 0.8f + 1e-3f * (float)(tick % 3) : 1.2f;
             const uint32_t faults = judge();
             if (faults != 0u && first == 0) {
                 first = tick;

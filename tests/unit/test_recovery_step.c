@@ -56,8 +56,7 @@ static double sustained(double step_time_s)
 /* How far behind the new CoP the XCoM may be: as planned, or d_h. */
 static double heel(const saddle_recovery_target_t *target)
 {
-    return fmax((double)config.cop_range_m,
-                (double)target->landing_m.x - (double)target->xcom_m.x);
+    return fmax((double)config.cop_range_m, (double)target->landing_m.x - (double)target->xcom_m.x);
 }
 
 static double outward_of(saddle_side_t stance)
@@ -70,8 +69,8 @@ static places_t places(const saddle_recovery_target_t *target)
     const double step_s = (double)target->step_time_s;
     const double quick_s = fmin(step_s, (double)config.prediction_horizon_s);
     const double x = (double)target->xcom_m.x + (double)target->departure_m.x;
-    const double y = outward_of(target->stance) *
-                     ((double)target->xcom_m.y + (double)target->departure_m.y);
+    const double y =
+        outward_of(target->stance) * ((double)target->xcom_m.y + (double)target->departure_m.y);
     return (places_t){
         .min_x = fmax(-reach(), x - sustained(step_s)),
         .max_x = fmin(reach(), x + heel(target)),
@@ -146,8 +145,7 @@ static void test_fast_walk_has_the_model_page_s_reach_left(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.005, 0.83, free.min_x);
     TEST_ASSERT_DOUBLE_WITHIN(0.005, 0.97, reach());
     target.landing_m.x = 0.0f;
-    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, free.min_x,
-                              recovery_from(&target).landing_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, free.min_x, recovery_from(&target).landing_m.x);
 }
 
 /* ---- one direction at a time --------------------------------------------------------------- */
@@ -156,9 +154,9 @@ static void test_fast_walk_has_the_model_page_s_reach_left(void)
 static void test_xcom_that_runs_ahead_pulls_the_landing_to_the_end_of_the_reach(void)
 {
     saddle_recovery_target_t target = {.stance = SADDLE_LEFT,
-                               .landing_m = {0.6f, -0.12f},
-                               .xcom_m = {0.6f, -0.06f},
-                               .step_time_s = STEP_TIME_S};
+                                       .landing_m = {0.6f, -0.12f},
+                                       .xcom_m = {0.6f, -0.06f},
+                                       .step_time_s = STEP_TIME_S};
     const double ahead = sustained((double)STEP_TIME_S);
     for (int mm = 0; mm < 1000; mm++) {
         target.departure_m.x = 1e-3f * (float)mm;
@@ -176,9 +174,9 @@ static void test_xcom_that_runs_ahead_pulls_the_landing_to_the_end_of_the_reach(
 static void test_xcom_that_falls_behind_pulls_the_landing_back_to_the_end_of_the_reach(void)
 {
     saddle_recovery_target_t target = {.stance = SADDLE_RIGHT,
-                               .landing_m = {0.6f, 0.12f},
-                               .xcom_m = {0.6f, 0.06f},
-                               .step_time_s = STEP_TIME_S};
+                                       .landing_m = {0.6f, 0.12f},
+                                       .xcom_m = {0.6f, 0.06f},
+                                       .step_time_s = STEP_TIME_S};
     for (int mm = 0; mm < 2000; mm++) {
         target.departure_m.x = -1e-3f * (float)mm;
         const double heel = 0.6 - 1e-3 * mm + 0.1; /* the XCoM over the heel of the new foot */
@@ -197,9 +195,9 @@ static void test_xcom_that_goes_aside_widens_the_step_or_narrows_it(void)
     const double stance_side = 0.45 / exp(FREQUENCY * 0.5);
     for (int side = 0; side < 2; side++) {
         saddle_recovery_target_t target = {.stance = SADDLE_LEFT,
-                                   .landing_m = {0.6f, -0.25f},
-                                   .xcom_m = {0.7f, -0.06f},
-                                   .step_time_s = STEP_TIME_S};
+                                           .landing_m = {0.6f, -0.25f},
+                                           .xcom_m = {0.7f, -0.06f},
+                                           .step_time_s = STEP_TIME_S};
         target = side == 0 ? target : mirrored(target);
         const double outward = outward_of(target.stance);
         for (int mm = -600; mm < 600; mm++) {
@@ -213,8 +211,7 @@ static void test_xcom_that_goes_aside_widens_the_step_or_narrows_it(void)
             if (recovery.found) {
                 const double widest = fmin(0.45, xcom + stance_side);
                 const double landing = fmin(fmax(0.25, xcom), widest);
-                TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, outward * landing,
-                                          recovery.landing_m.y);
+                TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, outward * landing, recovery.landing_m.y);
             }
         }
     }
@@ -229,10 +226,8 @@ static bool catches(const saddle_recovery_target_t *target, double x, double out
     const double quick_s = fmin(step_s, (double)config.prediction_horizon_s);
     const double ahead = (double)target->xcom_m.x + (double)target->departure_m.x - x;
     const double aside = outward_y - outward_of(target->stance) *
-                                         ((double)target->xcom_m.y +
-                                          (double)target->departure_m.y);
-    return fabs(x) <= reach() && ahead <= sustained(step_s) &&
-           ahead >= -heel(target) &&
+                                         ((double)target->xcom_m.y + (double)target->departure_m.y);
+    return fabs(x) <= reach() && ahead <= sustained(step_s) && ahead >= -heel(target) &&
            outward_y >= (double)config.recovery_width_min_m &&
            outward_y <= (double)config.recovery_width_max_m &&
            aside >= (double)config.recovery_margin_m &&
@@ -247,7 +242,8 @@ typedef struct {
 /* Over a grid, where the conditions on x and y do not depend on each other. */
 #define GRID_M 2e-3
 
-static search_t search(const saddle_recovery_target_t *target, double wanted_x, double wanted_outward_y)
+static search_t search(const saddle_recovery_target_t *target, double wanted_x,
+                       double wanted_outward_y)
 {
     search_t best = {.found = false, .x = HUGE_VAL, .y = HUGE_VAL};
     const places_t free = places(target);
@@ -283,10 +279,9 @@ static void test_landing_is_the_nearest_place_of_all_that_catch(void)
         const saddle_recovery_t recovery = recovery_from(&target);
         const double outward = outward_of(target.stance);
         const double follow = (double)config.recovery_follow;
-        const double wanted_x =
-            (double)target.landing_m.x + follow * (double)target.departure_m.x;
-        const double wanted_y = outward * ((double)target.landing_m.y +
-                                           follow * (double)target.departure_m.y);
+        const double wanted_x = (double)target.landing_m.x + follow * (double)target.departure_m.x;
+        const double wanted_y =
+            outward * ((double)target.landing_m.y + follow * (double)target.departure_m.y);
         const search_t best = search(&target, wanted_x, wanted_y);
         if (recovery.found && best.found) {
             found++;
@@ -356,10 +351,10 @@ static void test_margin_is_continuous(void)
 static void test_landing_follows_the_departure_by_its_share(void)
 {
     saddle_recovery_target_t target = {.stance = SADDLE_LEFT,
-                               .landing_m = {0.5f, -0.2f},
-                               .xcom_m = {0.6f, -0.15f},
-                               .departure_m = {0.08f, -0.03f},
-                               .step_time_s = STEP_TIME_S};
+                                       .landing_m = {0.5f, -0.2f},
+                                       .xcom_m = {0.6f, -0.15f},
+                                       .departure_m = {0.08f, -0.03f},
+                                       .step_time_s = STEP_TIME_S};
     const float shares[] = {0.0f, 0.25f, 1.0f};
     for (size_t i = 0; i < COUNT_OF(shares); i++) {
         config.recovery_follow = shares[i];
@@ -371,8 +366,7 @@ static void test_landing_follows_the_departure_by_its_share(void)
                                   recovery.landing_m.y);
     }
     target.departure_m.x = 0.55f; /* no further than it reaches */
-    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, reach(),
-                              recovery_from(&target).landing_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, reach(), recovery_from(&target).landing_m.x);
 }
 
 static void test_share_that_is_followed_changes_neither_margin_nor_decision(void)
@@ -392,9 +386,9 @@ static void test_share_that_is_followed_changes_neither_margin_nor_decision(void
 static void test_margin_of_the_configuration_keeps_the_xcom_inside_the_foot(void)
 {
     const saddle_recovery_target_t target = {.stance = SADDLE_RIGHT,
-                                     .landing_m = {0.6f, 0.1f},
-                                     .xcom_m = {0.7f, 0.15f},
-                                     .step_time_s = STEP_TIME_S};
+                                             .landing_m = {0.6f, 0.1f},
+                                             .xcom_m = {0.7f, 0.15f},
+                                             .step_time_s = STEP_TIME_S};
     const float margins[] = {-0.03f, 0.0f, 0.04f};
     for (size_t i = 0; i < COUNT_OF(margins); i++) {
         config.recovery_margin_m = margins[i];
@@ -422,9 +416,9 @@ static void test_step_stops_where_the_xcom_lies_in_the_base_of_its_posture(void)
         const bool left = recovery.foot == (uint8_t)SADDLE_LEFT;
         const twin_base_t base = twin_base(left ? landing : stance, left ? stance : landing, 0.1,
                                            (double)config.bos_factor);
-        const double margin = twin_margin(
-            &base, (point_t){(double)target.xcom_m.x + (double)target.departure_m.x,
-                             (double)target.xcom_m.y + (double)target.departure_m.y});
+        const double margin =
+            twin_margin(&base, (point_t){(double)target.xcom_m.x + (double)target.departure_m.x,
+                                         (double)target.xcom_m.y + (double)target.departure_m.y});
         if (fabs(margin) > PLACE_TOLERANCE) {
             TEST_ASSERT_EQUAL(margin > 0.0, recovery.stops);
         }
@@ -452,7 +446,8 @@ static double mended_by_simulation(double xi, double foot, double trailing, doub
 
 static float least_after(float deviation_m, saddle_cop_shift_t shift, float time_s)
 {
-    const saddle_growth_t growth = saddle_growth(model_of(&config), time_s, shift.trailing_m != 0.0f);
+    const saddle_growth_t growth =
+        saddle_growth(model_of(&config), time_s, shift.trailing_m != 0.0f);
     return saddle_least_deviation_m(deviation_m, shift, &growth);
 }
 
@@ -463,9 +458,9 @@ static void test_least_deviation_is_what_the_best_cop_leaves(void)
     for (int i = 0; i < MANY(300); i++) {
         const float deviation = random_in(&state, -0.3f, 0.3f);
         const float time_s = random_in(&state, 0.0f, 0.6f);
-        const saddle_cop_shift_t shift = {
-            .foot_m = random_in(&state, 0.0f, 0.1f),
-            .trailing_m = i % 3 == 0 ? 0.0f : random_in(&state, -0.5f, 0.5f)};
+        const saddle_cop_shift_t shift = {.foot_m = random_in(&state, 0.0f, 0.1f),
+                                          .trailing_m =
+                                              i % 3 == 0 ? 0.0f : random_in(&state, -0.5f, 0.5f)};
         const double expected = mended_by_simulation((double)deviation, (double)shift.foot_m,
                                                      (double)shift.trailing_m, (double)time_s);
         const double least = (double)least_after(deviation, shift, time_s);
@@ -490,10 +485,8 @@ static void test_trailing_foot_mends_what_departs_towards_it_only(void)
     const saddle_cop_shift_t towards = {.foot_m = 0.02f, .trailing_m = 0.5f};
     const saddle_cop_shift_t away = {.foot_m = 0.02f, .trailing_m = -0.5f};
     const saddle_cop_shift_t lifted = {.foot_m = 0.02f, .trailing_m = 0.0f};
-    TEST_ASSERT_TRUE(least_after(0.2f, towards, 0.4f) <
-                     least_after(0.2f, lifted, 0.4f));
-    ASSERT_SAME_FLOAT(least_after(0.2f, lifted, 0.4f),
-                      least_after(0.2f, away, 0.4f));
+    TEST_ASSERT_TRUE(least_after(0.2f, towards, 0.4f) < least_after(0.2f, lifted, 0.4f));
+    ASSERT_SAME_FLOAT(least_after(0.2f, lifted, 0.4f), least_after(0.2f, away, 0.4f));
 }
 
 int main(void)

@@ -35,13 +35,13 @@ static void test_margins_of_each_region_by_hand(void)
     const saddle_bos_t bos = side_by_side(0.3f);
     const double corner = sqrt(0.08);
     assert_margin(&bos, 0.1, 0.0, 0.0);
-    assert_margin(&bos, 0.01, 0.09, 0.0);                        /* edge, inside */
-    assert_margin(&bos, 0.05, 0.0, 0.25);                        /* arc, inside */
-    assert_margin(&bos, -0.1, 0.2, 0.0);                         /* edge, outside */
-    assert_margin(&bos, -0.1, 0.2, 0.28);                        /* edge, just before the corner */
-    assert_margin(&bos, -0.1, 0.0, 0.4);                         /* arc, outside */
-    assert_margin(&bos, 0.3 - hypot(0.09, 0.31), 0.09, 0.31);    /* arc, just before the corner */
-    assert_margin(&bos, -0.05, 0.1 + 0.03, corner + 0.04);       /* corner: 3, 4, 5 */
+    assert_margin(&bos, 0.01, 0.09, 0.0);                     /* edge, inside */
+    assert_margin(&bos, 0.05, 0.0, 0.25);                     /* arc, inside */
+    assert_margin(&bos, -0.1, 0.2, 0.0);                      /* edge, outside */
+    assert_margin(&bos, -0.1, 0.2, 0.28);                     /* edge, just before the corner */
+    assert_margin(&bos, -0.1, 0.0, 0.4);                      /* arc, outside */
+    assert_margin(&bos, 0.3 - hypot(0.09, 0.31), 0.09, 0.31); /* arc, just before the corner */
+    assert_margin(&bos, -0.05, 0.1 + 0.03, corner + 0.04);    /* corner: 3, 4, 5 */
     assert_margin(&bos, 0.0, 0.1, corner);
     assert_margin(&bos, 0.0, 0.1, 0.1);
     assert_margin(&bos, 0.0, 0.0, 0.3);
@@ -320,14 +320,14 @@ static void test_exit_of_a_moving_point_by_hand(void)
     const double speeds[] = {2e-4, 1.0, 6.0};
     for (size_t i = 0; i < COUNT_OF(speeds); i++) {
         const double v = speeds[i];
-        assert_exit(&bos, 0.1, 0.0, 0.0, 0.0, v, 0.0);                     /* edge, ahead */
-        assert_exit(&bos, 0.1, 0.07, -0.05, 0.07, v, 0.0);                 /* from behind */
-        assert_exit(&bos, 0.1, 0.2, 0.0, 0.1, v, v);                       /* edge, aslant */
-        assert_exit(&bos, 0.0, 0.3, 0.0, 0.1, 0.0, v);                     /* arc, sideways */
-        assert_exit(&bos, 0.0, 0.3, 0.0, -0.25, 0.0, v);                   /* all through */
-        assert_exit(&bos, 0.06, sqrt(0.09 - 0.0036), 0.06, 0.1, 0.0, v);   /* arc, beside y_S */
+        assert_exit(&bos, 0.1, 0.0, 0.0, 0.0, v, 0.0);                   /* edge, ahead */
+        assert_exit(&bos, 0.1, 0.07, -0.05, 0.07, v, 0.0);               /* from behind */
+        assert_exit(&bos, 0.1, 0.2, 0.0, 0.1, v, v);                     /* edge, aslant */
+        assert_exit(&bos, 0.0, 0.3, 0.0, 0.1, 0.0, v);                   /* arc, sideways */
+        assert_exit(&bos, 0.0, 0.3, 0.0, -0.25, 0.0, v);                 /* all through */
+        assert_exit(&bos, 0.06, sqrt(0.09 - 0.0036), 0.06, 0.1, 0.0, v); /* arc, beside y_S */
         assert_exit(&bos, 0.1, corner, 0.05, 0.5 * corner, v / 3.0, corner * v / 0.3);
-        assert_exit(&bos, 0.1, 0.1, 0.1, 0.1, v, 0.0);                     /* on the border */
+        assert_exit(&bos, 0.1, 0.1, 0.1, 0.1, v, 0.0); /* on the border */
     }
     const saddle_bos_t disc = side_by_side(0.05f);
     assert_exit(&disc, 0.05, 0.0, 0.01, 0.0, 1.0, 0.0);
@@ -340,8 +340,8 @@ static void test_exit_of_a_point_at_rest_is_the_nearest_border_point(void)
     const double y = sqrt(0.09 - 0.018 * 0.018);
     const double rest[] = {0.0, 5e-5};
     for (size_t i = 0; i < COUNT_OF(rest); i++) {
-        assert_exit(&bos, 0.1, 0.02, 0.03, 0.02, rest[i], rest[i]);  /* edge */
-        assert_exit(&bos, 0.0, 0.3, 0.0, 0.25, rest[i], -rest[i]);   /* arc */
+        assert_exit(&bos, 0.1, 0.02, 0.03, 0.02, rest[i], rest[i]);        /* edge */
+        assert_exit(&bos, 0.0, 0.3, 0.0, 0.25, rest[i], -rest[i]);         /* arc */
         assert_exit(&bos, 0.018, y, 0.96 * 0.018, 0.96 * y, 0.0, rest[i]); /* arc, aslant */
     }
 }
@@ -355,8 +355,8 @@ static void test_exit_of_a_point_outside_is_the_nearest_border_point(void)
     for (size_t i = 0; i < COUNT_OF(velocities); i++) {
         const double vx = velocities[i][0];
         const double vy = velocities[i][1];
-        assert_exit(&bos, 0.1, 0.05, 0.2, 0.05, vx, vy);           /* edge */
-        assert_exit(&bos, 0.0, 0.3, 0.0, 0.4, vx, vy);             /* arc */
+        assert_exit(&bos, 0.1, 0.05, 0.2, 0.05, vx, vy);             /* edge */
+        assert_exit(&bos, 0.0, 0.3, 0.0, 0.4, vx, vy);               /* arc */
         assert_exit(&bos, 0.1, corner, 0.13, corner + 0.04, vx, vy); /* corner */
         assert_exit(&bos, 0.1, corner, 0.5, 0.4, vx, vy);
     }
@@ -493,12 +493,10 @@ static void test_surface_ends_where_the_pendulum_lies_down(void)
     const float lowest = sqrtf(1.0f - SADDLE_LOWEST_PENDULUM * SADDLE_LOWEST_PENDULUM);
     float height = 1.0f;
     TEST_ASSERT_FALSE(
-        surface_height_m(cop, (saddle_vec2_t){0.8f * lowest + 1e-4f, 0.05f}, 0.8f,
-                                &height));
+        surface_height_m(cop, (saddle_vec2_t){0.8f * lowest + 1e-4f, 0.05f}, 0.8f, &height));
     ASSERT_SAME_FLOAT(0.0f, height);
     TEST_ASSERT_TRUE(
-        surface_height_m(cop, (saddle_vec2_t){0.8f * lowest - 1e-4f, 0.05f}, 0.8f,
-                                &height));
+        surface_height_m(cop, (saddle_vec2_t){0.8f * lowest - 1e-4f, 0.05f}, 0.8f, &height));
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.08, height);
 }
 
@@ -508,8 +506,9 @@ static void test_gravity_is_the_slope_of_the_energy(void)
     const double h = 1e-6;
     const double weight = 63.3 * GRAVITY;
     for (int i = 0; i < MANY(5000); i++) {
-        const saddle_vec2_t cop[2] = {{random_in(&state, -0.3f, 0.3f), random_in(&state, 0.05f, 0.2f)},
-                                      {random_in(&state, -0.3f, 0.3f), random_in(&state, -0.2f, 0.0f)}};
+        const saddle_vec2_t cop[2] = {
+            {random_in(&state, -0.3f, 0.3f), random_in(&state, 0.05f, 0.2f)},
+            {random_in(&state, -0.3f, 0.3f), random_in(&state, -0.2f, 0.0f)}};
         const saddle_vec2_t com = {random_in(&state, -0.3f, 0.3f), random_in(&state, -0.3f, 0.3f)};
         const double x = (double)com.x;
         const double y = (double)com.y;

@@ -23,10 +23,10 @@ static bool update(uint32_t faults)
     return saddle_safe_state_update(&state, model_of(&config), faults, DT_S);
 }
 
-static const uint32_t LOST[] = {
-    SADDLE_FAULT_COMMAND_STALE, SADDLE_FAULT_COM_STALE,   SADDLE_FAULT_COM_FROZEN,
-    SADDLE_FAULT_LEFT_STALE,    SADDLE_FAULT_LEFT_FROZEN, SADDLE_FAULT_RIGHT_STALE,
-    SADDLE_FAULT_RIGHT_FROZEN};
+static const uint32_t LOST[] = {SADDLE_FAULT_COMMAND_STALE, SADDLE_FAULT_COM_STALE,
+                                SADDLE_FAULT_COM_FROZEN,    SADDLE_FAULT_LEFT_STALE,
+                                SADDLE_FAULT_LEFT_FROZEN,   SADDLE_FAULT_RIGHT_STALE,
+                                SADDLE_FAULT_RIGHT_FROZEN};
 
 static const uint32_t UNUSABLE[] = {SADDLE_FAULT_COM_RANGE, SADDLE_FAULT_LEFT_RANGE,
                                     SADDLE_FAULT_RIGHT_RANGE, SADDLE_FAULT_AIRBORNE,

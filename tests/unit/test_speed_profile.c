@@ -9,7 +9,10 @@ static const double UNITS = 4398046511104.0;
 static uint32_t state;
 static saddle_speed_profile_t profile;
 
-void setUp(void) { state = 11; }
+void setUp(void)
+{
+    state = 11;
+}
 
 void tearDown(void) {}
 

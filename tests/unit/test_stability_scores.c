@@ -25,10 +25,13 @@ static void test_step_score_is_one_on_the_reference_and_zero_on_the_bound(void)
         ASSERT_SAME_FLOAT(1.0f, saddle_step_score(reference, reference, bounds[i]));
         TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, saddle_step_score(bounds[i], reference, bounds[i]));
         const float middle = 0.5f * (reference + bounds[i]);
-        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.5, saddle_step_score(middle, reference, bounds[i]));
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.5,
+                                  saddle_step_score(middle, reference, bounds[i]));
     }
-    TEST_ASSERT_DOUBLE_WITHIN(2e-6, -0.0935 / 0.1578, saddle_step_score(0.1f, reference, bounds[0]));
-    TEST_ASSERT_DOUBLE_WITHIN(2e-6, -0.0162 / 0.1325, saddle_step_score(0.5f, reference, bounds[1]));
+    TEST_ASSERT_DOUBLE_WITHIN(2e-6, -0.0935 / 0.1578,
+                              saddle_step_score(0.1f, reference, bounds[0]));
+    TEST_ASSERT_DOUBLE_WITHIN(2e-6, -0.0162 / 0.1325,
+                              saddle_step_score(0.5f, reference, bounds[1]));
     TEST_ASSERT_TRUE(saddle_step_score(0.4f, reference, bounds[0]) > 1.0f); /* longer: no jump */
 }
 

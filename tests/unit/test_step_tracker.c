@@ -393,8 +393,8 @@ static void test_standing_is_both_feet_down_and_a_slow_com(void)
     } table[] = {{0.0f, 0.0f, true, true, true},    {0.19f, 0.0f, true, true, true},
                  {0.0f, -0.19f, true, true, true},  {0.21f, 0.0f, true, true, false},
                  {0.15f, 0.15f, true, true, false}, {0.15f, -0.15f, true, true, false},
-                 {-0.21f, 0.0f, true, true, false},
-                 {0.0f, 0.0f, false, true, false},  {0.0f, 0.0f, true, false, false}};
+                 {-0.21f, 0.0f, true, true, false}, {0.0f, 0.0f, false, true, false},
+                 {0.0f, 0.0f, true, false, false}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         setUp();
         measured.com.velocity_m_s = (saddle_vec2_t){table[i].vx, table[i].vy};

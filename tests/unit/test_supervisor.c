@@ -79,8 +79,8 @@ static uint32_t update(void)
 }
 
 static const uint32_t UNTIL_STEP = (uint32_t)SADDLE_VALID_ALL & ~(uint32_t)SADDLE_VALID_STEP;
-static const uint32_t WITHOUT_COM = SADDLE_VALID_V_COMP | SADDLE_VALID_S_SW |
-                                    SADDLE_VALID_MOS_COM | SADDLE_VALID_GRAVITY;
+static const uint32_t WITHOUT_COM =
+    SADDLE_VALID_V_COMP | SADDLE_VALID_S_SW | SADDLE_VALID_MOS_COM | SADDLE_VALID_GRAVITY;
 
 static void strike_with(saddle_side_t side)
 {
@@ -98,10 +98,14 @@ static void assert_unscored_is_zero(void)
         uint32_t valid;
         float number;
     } numbers[] = {
-        {SADDLE_VALID_V_COMP, scores.v_comp_m_s},   {SADDLE_VALID_STEP, scores.s_pend},
-        {SADDLE_VALID_STEP, scores.s_jump},         {SADDLE_VALID_S_SW, scores.s_sw},
-        {SADDLE_VALID_MOS_COM, scores.mos_com_m},   {SADDLE_VALID_MOS_XCOM, scores.mos_xcom_m},
-        {SADDLE_VALID_GRAVITY, scores.gravity_n.x}, {SADDLE_VALID_GRAVITY, scores.gravity_n.y},
+        {SADDLE_VALID_V_COMP, scores.v_comp_m_s},
+        {SADDLE_VALID_STEP, scores.s_pend},
+        {SADDLE_VALID_STEP, scores.s_jump},
+        {SADDLE_VALID_S_SW, scores.s_sw},
+        {SADDLE_VALID_MOS_COM, scores.mos_com_m},
+        {SADDLE_VALID_MOS_XCOM, scores.mos_xcom_m},
+        {SADDLE_VALID_GRAVITY, scores.gravity_n.x},
+        {SADDLE_VALID_GRAVITY, scores.gravity_n.y},
         {SADDLE_VALID_STOP, scores.excess_stop_j},
         {SADDLE_VALID_STOP, scores.can_stop ? 1.0f : 0.0f},
     };
@@ -135,12 +139,11 @@ static void test_good_measurement_has_no_fault_and_every_score_but_the_step_s(vo
 
 static void assert_finite_scores(void)
 {
-    const float numbers[] = {scores.v_comp_m_s,   scores.s_pend,       scores.s_jump,
-                             scores.s_sw,         scores.mos_com_m,    scores.mos_xcom_m,
-                             scores.gravity_n.x,  scores.gravity_n.y,  scores.xcom_m.x,
-                             scores.xcom_m.y,     scores.bos.centre_m.x, scores.bos.centre_m.y,
-                             scores.bos.axis_x.x, scores.bos.axis_x.y, scores.bos.radius_m,
-                             scores.excess_stop_j};
+    const float numbers[] = {
+        scores.v_comp_m_s,   scores.s_pend,       scores.s_jump,         scores.s_sw,
+        scores.mos_com_m,    scores.mos_xcom_m,   scores.gravity_n.x,    scores.gravity_n.y,
+        scores.xcom_m.x,     scores.xcom_m.y,     scores.bos.centre_m.x, scores.bos.centre_m.y,
+        scores.bos.axis_x.x, scores.bos.axis_x.y, scores.bos.radius_m,   scores.excess_stop_j};
     for (size_t i = 0; i < COUNT_OF(numbers); i++) {
         TEST_ASSERT_TRUE(isfinite(numbers[i]));
     }
@@ -151,10 +154,10 @@ static void test_each_fault_takes_the_scores_that_need_its_input(void)
 {
     const uint32_t of_com[] = {SADDLE_FAULT_COM_STALE, SADDLE_FAULT_COM_RANGE,
                                SADDLE_FAULT_COM_FROZEN};
-    const uint32_t of_feet[] = {
-        SADDLE_FAULT_LEFT_STALE,   SADDLE_FAULT_LEFT_RANGE,  SADDLE_FAULT_LEFT_FROZEN,
-        SADDLE_FAULT_RIGHT_STALE,  SADDLE_FAULT_RIGHT_RANGE, SADDLE_FAULT_RIGHT_FROZEN,
-        SADDLE_FAULT_FEET_CROSSED, SADDLE_FAULT_AIRBORNE};
+    const uint32_t of_feet[] = {SADDLE_FAULT_LEFT_STALE,   SADDLE_FAULT_LEFT_RANGE,
+                                SADDLE_FAULT_LEFT_FROZEN,  SADDLE_FAULT_RIGHT_STALE,
+                                SADDLE_FAULT_RIGHT_RANGE,  SADDLE_FAULT_RIGHT_FROZEN,
+                                SADDLE_FAULT_FEET_CROSSED, SADDLE_FAULT_AIRBORNE};
     const float numbers[] = {0.3f, NAN, INFINITY, -1e30f};
     for (size_t k = 0; k < COUNT_OF(numbers); k++) {
         for (size_t i = 0; i < COUNT_OF(of_com); i++) {
@@ -307,9 +310,8 @@ static void test_validity_follows_from_what_is_known(void)
         expected |= speed && half_step ? (uint32_t)SADDLE_VALID_STEP : 0u;
         expected |= speed && feet ? (uint32_t)SADDLE_VALID_S_SW : 0u;
         expected |= feet ? (uint32_t)SADDLE_VALID_MOS_COM | (uint32_t)SADDLE_VALID_GRAVITY : 0u;
-        expected |= feet && velocity
-                        ? (uint32_t)SADDLE_VALID_MOS_XCOM | (uint32_t)SADDLE_VALID_STOP
-                        : 0u;
+        expected |=
+            feet && velocity ? (uint32_t)SADDLE_VALID_MOS_XCOM | (uint32_t)SADDLE_VALID_STOP : 0u;
         TEST_ASSERT_EQUAL_HEX32(expected, scores.valid);
         assert_finite_scores();
         TEST_ASSERT_EQUAL(velocity, scores.xcom_m.x > 0.0f);
@@ -382,14 +384,10 @@ static void test_paper_s_verdict_needs_all_three_scores_or_the_stop(void)
         float half_step, com_y, speed_x;
         bool stable;
     } table[] = {
-        {0.35f, 0.0f, 1.2f, true},
-        {0.19f, 0.0f, 1.2f, false}, /* below v / (2 w) = 0.1935 */
-        {0.20f, 0.0f, 1.2f, true},
-        {0.49f, 0.0f, 1.2f, false}, /* beyond the reach of 0.4838 */
-        {0.48f, 0.0f, 1.2f, true},
-        {0.35f, 0.051f, 1.2f, false}, /* beyond the foot */
-        {0.35f, -0.049f, 1.2f, true},
-        {0.19f, 0.0f, 0.0f, true}, /* at rest: it can stop */
+        {0.35f, 0.0f, 1.2f, true},    {0.19f, 0.0f, 1.2f, false},   /* below v / (2 w) = 0.1935 */
+        {0.20f, 0.0f, 1.2f, true},    {0.49f, 0.0f, 1.2f, false},   /* beyond the reach of 0.4838 */
+        {0.48f, 0.0f, 1.2f, true},    {0.35f, 0.051f, 1.2f, false}, /* beyond the foot */
+        {0.35f, -0.049f, 1.2f, true}, {0.19f, 0.0f, 0.0f, true},    /* at rest: it can stop */
     };
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         const saddle_posture_t posture = {

@@ -203,7 +203,7 @@ static void test_plan_advances_by_the_time_that_passed_from_any_origin(void)
 
 static void test_late_tick_advances_by_tick_max_and_says_so(void)
 {
-    const uint64_t gaps[] = {200001, 1000000, 0xFFFFFFFFu, 0x100000000u, 0x100000000u + 80000u,
+    const uint64_t gaps[] = {200001,    1000000, 0xFFFFFFFFu, 0x100000000u, 0x100000000u + 80000u,
                              UINT64_MAX};
     input.measurement = saddle_no_measurement();
     for (size_t i = 0; i < COUNT_OF(gaps); i++) {
@@ -480,10 +480,14 @@ static void assert_sound_scores(const saddle_scores_t *scores)
         uint32_t valid;
         float number;
     } numbers[] = {
-        {SADDLE_VALID_V_COMP, scores->v_comp_m_s}, {SADDLE_VALID_STEP, scores->s_pend},
-        {SADDLE_VALID_STEP, scores->s_jump},       {SADDLE_VALID_S_SW, scores->s_sw},
-        {SADDLE_VALID_MOS_COM, scores->mos_com_m}, {SADDLE_VALID_MOS_XCOM, scores->mos_xcom_m},
-        {SADDLE_VALID_GRAVITY, scores->gravity_n.x}, {SADDLE_VALID_GRAVITY, scores->gravity_n.y},
+        {SADDLE_VALID_V_COMP, scores->v_comp_m_s},
+        {SADDLE_VALID_STEP, scores->s_pend},
+        {SADDLE_VALID_STEP, scores->s_jump},
+        {SADDLE_VALID_S_SW, scores->s_sw},
+        {SADDLE_VALID_MOS_COM, scores->mos_com_m},
+        {SADDLE_VALID_MOS_XCOM, scores->mos_xcom_m},
+        {SADDLE_VALID_GRAVITY, scores->gravity_n.x},
+        {SADDLE_VALID_GRAVITY, scores->gravity_n.y},
         {SADDLE_VALID_STOP, scores->excess_stop_j},
         {SADDLE_VALID_STOP, scores->can_stop ? 1.0f : 0.0f},
     };
@@ -500,8 +504,8 @@ static const uint32_t FEET_MISSING = SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT;
 static void assert_unusable_input_is_not_scored(const saddle_output_t *o)
 {
     const uint32_t of_com = SADDLE_VALID_MOS_XCOM | SADDLE_VALID_STOP;
-    const uint32_t of_feet = of_com | SADDLE_VALID_S_SW | SADDLE_VALID_MOS_COM |
-                             SADDLE_VALID_GRAVITY;
+    const uint32_t of_feet =
+        of_com | SADDLE_VALID_S_SW | SADDLE_VALID_MOS_COM | SADDLE_VALID_GRAVITY;
     if ((o->faults & COM_MISSING) != 0u) {
         TEST_ASSERT_EQUAL_HEX32(0, o->scores.valid & of_com);
         TEST_ASSERT_TRUE(o->scores.xcom_m.x == 0.0f && o->scores.xcom_m.y == 0.0f);
@@ -725,12 +729,10 @@ static void test_plan_at_beyond_its_span_is_refused(void)
 
 static void test_join_needs_a_walk(void)
 {
-    const saddle_command_t bad[] = {{SADDLE_COMMAND_STAND, 1.0f, 0.1f},
-                                    {SADDLE_COMMAND_WALK, 0.0f, 0.1f},
-                                    {SADDLE_COMMAND_WALK, -1.0f, 0.1f},
-                                    {SADDLE_COMMAND_WALK, NAN, 0.1f},
-                                    {SADDLE_COMMAND_WALK, 1.0f, INFINITY},
-                                    {7, 1.0f, 0.1f}};
+    const saddle_command_t bad[] = {
+        {SADDLE_COMMAND_STAND, 1.0f, 0.1f},    {SADDLE_COMMAND_WALK, 0.0f, 0.1f},
+        {SADDLE_COMMAND_WALK, -1.0f, 0.1f},    {SADDLE_COMMAND_WALK, NAN, 0.1f},
+        {SADDLE_COMMAND_WALK, 1.0f, INFINITY}, {7, 1.0f, 0.1f}};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_COMMAND, saddle_join(&context, &bad[i]));
     }
@@ -785,8 +787,7 @@ static void measure_plan(const saddle_plan_t *plan, saddle_measurement_t *measur
     for (int side = 0; side < 2; side++) {
         measured->foot[side].cop_m.x = plan->foot_m[side].x - plan->com_m.x;
         measured->foot[side].cop_m.y = plan->foot_m[side].y - plan->com_m.y;
-        measured->foot[side].contact =
-            side == (int)plan->support || !(plan->step_length_m > 0.0f);
+        measured->foot[side].contact = side == (int)plan->support || !(plan->step_length_m > 0.0f);
     }
 }
 

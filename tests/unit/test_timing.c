@@ -10,9 +10,7 @@ void setUp(void)
     timing = (saddle_timing_t){.ticks = 0};
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void tick(uint64_t due_us, uint64_t begin_us, uint64_t end_us)
 {
@@ -47,8 +45,8 @@ static void test_every_latency_has_its_bin(void)
     static const struct {
         uint64_t latency_us;
         unsigned bin;
-    } cases[] = {{0, 0}, {1, 0}, {2, 1}, {3, 1}, {4, 2}, {1023, 9}, {1024, 10},
-                 {32768, 15}, {65535, 15}, {65536, 16}, {UINT64_MAX, 16}};
+    } cases[] = {{0, 0},     {1, 0},      {2, 1},      {3, 1},      {4, 2},          {1023, 9},
+                 {1024, 10}, {32768, 15}, {65535, 15}, {65536, 16}, {UINT64_MAX, 16}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         setUp();
         tick(0, cases[i].latency_us, cases[i].latency_us);

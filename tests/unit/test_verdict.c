@@ -224,14 +224,13 @@ static void assert_expected_base(const walk_t *walk, double x, const state_t *de
     const double wt = FREQUENCY * until_landing_s(walk, x);
     const state_t landing = planned_state(walk, walk->half);
     const point_t off = xcom(deviation);
-    const point_t com = {
-        deviation->com.x * cosh(wt) + deviation->velocity.x / FREQUENCY * sinh(wt),
-        deviation->com.y * cosh(wt) + deviation->velocity.y / FREQUENCY * sinh(wt)};
+    const point_t com = {deviation->com.x * cosh(wt) + deviation->velocity.x / FREQUENCY * sinh(wt),
+                         deviation->com.y * cosh(wt) +
+                             deviation->velocity.y / FREQUENCY * sinh(wt)};
     const point_t grown = {off.x * exp(wt), off.y * exp(wt)};
     const bool left = walk->stance == SADDLE_LEFT;
     const point_t landed = landing_of(walk);
-    const twin_base_t base =
-        twin_base(left ? ORIGIN : landed, left ? landed : ORIGIN, 0.1, 1.0);
+    const twin_base_t base = twin_base(left ? ORIGIN : landed, left ? landed : ORIGIN, 0.1, 1.0);
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, twin_margin(&base, sum(landing.com, com)),
                               verdict.ebos_com_m);
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, twin_margin(&base, sum(xcom(&landing), grown)),
@@ -294,8 +293,8 @@ static void test_deviation_from_the_plan_gives_the_model_s_numbers(void)
 {
     uint32_t state = 97;
     for (int i = 0; i < 2000; i++) {
-        const walk_t walk = walk_at((double)random_in(&state, 0.4f, 1.7f),
-                                    i % 2 == 0 ? SADDLE_LEFT : SADDLE_RIGHT);
+        const walk_t walk =
+            walk_at((double)random_in(&state, 0.4f, 1.7f), i % 2 == 0 ? SADDLE_LEFT : SADDLE_RIGHT);
         const double x = walk.half * (double)random_in(&state, -0.95f, 0.95f);
         const state_t deviation = {
             {(double)random_in(&state, -0.05f, 0.05f), (double)random_in(&state, -0.03f, 0.03f)},
@@ -626,8 +625,7 @@ static void test_standing_has_no_scores_of_a_walk(void)
     supervisor.steps.half_step_known = true;
     supervisor.steps.half_step_m = 0.1f;
     update(0);
-    TEST_ASSERT_BITS_LOW(
-        SADDLE_VALID_V_COMP | SADDLE_VALID_STEP | SADDLE_VALID_S_SW, scores.valid);
+    TEST_ASSERT_BITS_LOW(SADDLE_VALID_V_COMP | SADDLE_VALID_STEP | SADDLE_VALID_S_SW, scores.valid);
     ASSERT_SAME_FLOAT(0.0f, scores.s_pend);
     assert_verdict(SADDLE_LEVEL_STABLE, SADDLE_REASON_NONE);
 }
@@ -802,8 +800,8 @@ static void see(double push)
 }
 
 #define CALM 0.0
-#define OFF 0.5      /* XCOM_AP */
-#define FALLING 2.0  /* NO_STEP */
+#define OFF 0.5     /* XCOM_AP */
+#define FALLING 2.0 /* NO_STEP */
 
 static void test_level_is_announced_once_it_has_held(void)
 {

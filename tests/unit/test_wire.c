@@ -13,9 +13,7 @@ void setUp(void)
     memset(&receiver, 0, sizeof receiver);
 }
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static saddle_frame_t command_frame(uint8_t counter)
 {
@@ -335,23 +333,21 @@ static void test_what_was_not_learned_has_no_numbers(void)
  *  beside one that wraps; LCM, then 80, 7, 4095 and 0 ms in 12 bits each; status and limits 0. */
 static void test_process_bytes(void)
 {
-    const uint8_t expected[4][7] = {
-        {0x07, 0x59, 0x1F, 0x0D, 0x00, 0xFF, 0x7F},
-        {0x07, 0x03, 0xFF, 0x00, 0x02, 0x05, 0x00},
-        {0x27, 0x50, 0x70, 0x00, 0xFF, 0x0F, 0x00},
-        {0x07, 0x00, SADDLE_WIRE_VERSION, 0x04, 0x00, 0xFF, 0xFF}};
-    const saddle_wire_health_t health = {
-        .late_ticks = 4,
-        .rejected_frames = 70000,
-        .period_us = 80250,
-        .latency_us = 130,
-        .latency_max_us = 400000,
-        .command_source = 2,
-        .input_age_us = {80000, 7999, SADDLE_AGE_NEVER_US, 400},
-        .accepted = 65536 + 5,
-        .malformed = 3,
-        .bad_crc = 256,
-        .bad_counter = 2};
+    const uint8_t expected[4][7] = {{0x07, 0x59, 0x1F, 0x0D, 0x00, 0xFF, 0x7F},
+                                    {0x07, 0x03, 0xFF, 0x00, 0x02, 0x05, 0x00},
+                                    {0x27, 0x50, 0x70, 0x00, 0xFF, 0x0F, 0x00},
+                                    {0x07, 0x00, SADDLE_WIRE_VERSION, 0x04, 0x00, 0xFF, 0xFF}};
+    const saddle_wire_health_t health = {.late_ticks = 4,
+                                         .rejected_frames = 70000,
+                                         .period_us = 80250,
+                                         .latency_us = 130,
+                                         .latency_max_us = 400000,
+                                         .command_source = 2,
+                                         .input_age_us = {80000, 7999, SADDLE_AGE_NEVER_US, 400},
+                                         .accepted = 65536 + 5,
+                                         .malformed = 3,
+                                         .bad_crc = 256,
+                                         .bad_counter = 2};
     const saddle_output_t output = {.status = SADDLE_OK};
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_wire_encode_output(&output, &health, 7, frames);

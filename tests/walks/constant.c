@@ -37,8 +37,7 @@ static steady_t steady_walk(const saddle_config_t *config, const saddle_command_
     walk.half = (double)config->half_step_slope_s * speed + (double)config->half_step_intercept_m;
     walk.width = width_at(config, speed);
     walk.amplitude = fmin(walk.width / (2.0 * PI * speed), walk.width / PI);
-    walk.vertical =
-        (double)config->vertical_slope_s * speed + (double)config->vertical_intercept_m;
+    walk.vertical = (double)config->vertical_slope_s * speed + (double)config->vertical_intercept_m;
     walk.pendulum = (double)config->pendulum_ratio * (double)config->body_height_m;
     walk.heel_strike = (double)command->heel_strike_rad;
     walk.lead = range * (1.0 - cos(walk.heel_strike));
@@ -64,8 +63,7 @@ static double height(const steady_t *walk, double x, double y, bool towards_sadd
     const double rise = erf((since_saddle + walk->lead) / (walk->speed * tau));
     const double angle =
         towards_saddle ? walk->toe_off * (1.0 + rise) : walk->heel_strike * (1.0 - rise);
-    const double leg =
-        walk->pendulum + 2.0 * (double)walk->config->cop_range_m * sin(0.5 * angle);
+    const double leg = walk->pendulum + 2.0 * (double)walk->config->cop_range_m * sin(0.5 * angle);
     return sqrt(leg * leg - x * x - y * y);
 }
 
@@ -116,8 +114,8 @@ static int walk_an_hour(const saddle_config_t *config, double speed, differences
         failures += saddle_tick(&context, &input, &output) != SADDLE_OK;
         const double error_m = difference_m(&walk, &output.plan, way_m);
         keep_larger(way_m < 4.0 * walk.half ? &largest.first_m : &largest.hour_m, error_m);
-        keep_larger(&largest.phase_rad, turn_between(0.5 * PI * way_m / walk.half,
-                                                     (double)output.plan.theta_rad));
+        keep_larger(&largest.phase_rad,
+                    turn_between(0.5 * PI * way_m / walk.half, (double)output.plan.theta_rad));
     }
     const bool holds = failures == 0 && largest.first_m < TOLERANCE_M &&
                        largest.hour_m < TOLERANCE_M && largest.phase_rad < TOLERANCE_RAD;
@@ -140,8 +138,8 @@ int check_constant(void)
         config.ankle = (saddle_ankle_t)ankle;
         for (int i = 0; i < SPEEDS; i++) {
             const double share = (double)i / (SPEEDS - 1);
-            failures += walk_an_hour(&config, SLOWEST_M_S + (FASTEST_M_S - SLOWEST_M_S) * share,
-                                     &worst);
+            failures +=
+                walk_an_hour(&config, SLOWEST_M_S + (FASTEST_M_S - SLOWEST_M_S) * share, &worst);
         }
         printf("ankle %d: first stride %.1e m, the hour %.1e m, phase %.1e rad\n", ankle,
                worst.first_m, worst.hour_m, worst.phase_rad);

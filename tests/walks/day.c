@@ -20,10 +20,10 @@ typedef struct {
 
 typedef struct {
     const saddle_config_t *config;
-    double speed, wanted;  /* m/s */
-    long quarters;         /* passed since the left foot via point; an even one ends in a landing */
-    double walked;         /* way to the stance foot */
-    double x;              /* CoM from the stance foot */
+    double speed, wanted; /* m/s */
+    long quarters;        /* passed since the left foot via point; an even one ends in a landing */
+    double walked;        /* way to the stance foot */
+    double x;             /* CoM from the stance foot */
     double half, width, amplitude; /* shape of the running quarter */
     double off_value, off_slope;   /* CoM y at the quarter's start less the shape's */
     double stance_y, swing_y;      /* lines of the feet, from the walking line */
@@ -188,8 +188,7 @@ typedef struct {
 
 static void compare(const twin_t *twin, const saddle_plan_t *plan, differences_t *largest)
 {
-    const double progress =
-        lands_next(twin) ? twin->x / twin->half : 1.0 + twin->x / twin->half;
+    const double progress = lands_next(twin) ? twin->x / twin->half : 1.0 + twin->x / twin->half;
     const double phase = 0.5 * PI * ((double)(twin->quarters % 4) + progress);
     const bool twin_left = stance_side(twin) > 0.0;
     const bool plan_left = plan->support == (uint8_t)SADDLE_LEFT;
@@ -220,10 +219,9 @@ int check_day(void)
     static saddle_context_t context;
     const saddle_config_t config = saddle_config_default(1.79f, 63.3f);
     uint64_t random = 20261122u;
-    saddle_input_t input = {.command = {.mode = SADDLE_COMMAND_WALK,
-                                        .speed_m_s = 1.2f,
-                                        .heel_strike_rad = 0.1745f},
-                            .measurement = saddle_no_measurement()};
+    saddle_input_t input = {
+        .command = {.mode = SADDLE_COMMAND_WALK, .speed_m_s = 1.2f, .heel_strike_rad = 0.1745f},
+        .measurement = saddle_no_measurement()};
     saddle_output_t output;
     twin_t twin = joined_twin(&config, (double)input.command.speed_m_s);
     uint64_t next_us = 0;

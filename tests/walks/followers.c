@@ -39,7 +39,8 @@ static void random_body(follower_t *follower)
 /* One in four stands. */
 static void random_command(follower_t *follower)
 {
-    const double fastest = SADDLE_CEILING_MARGIN * (double)follower->context.model.body.speed_ceiling_m_s;
+    const double fastest =
+        SADDLE_CEILING_MARGIN * (double)follower->context.model.body.speed_ceiling_m_s;
     const bool stands = random_bits(&follower->random) >> 62 == 0u;
     follower->input.command.mode = SADDLE_COMMAND_WALK;
     follower->input.command.speed_m_s =

@@ -20,13 +20,13 @@
 #define SCHEDULE_US 30000000u
 #define QUERY_US 1000u
 #define JUMP_M 1e-5
-#define JUMP_M_S 1e-5       /* rounding of a velocity, some steps in a row */
-#define LANDING_M 2e-7      /* rounding of a position, and of the way to the nanometre */
-#define DISTANCE_M 2e-5     /* what a trapezium a millisecond misses at the kinks of the speed */
-#define EVENT_S 5e-5        /* rounding of times: with EVENT_SHARE, EVENT_WAY_M at the speed */
+#define JUMP_M_S 1e-5   /* rounding of a velocity, some steps in a row */
+#define LANDING_M 2e-7  /* rounding of a position, and of the way to the nanometre */
+#define DISTANCE_M 2e-5 /* what a trapezium a millisecond misses at the kinks of the speed */
+#define EVENT_S 5e-5    /* rounding of times: with EVENT_SHARE, EVENT_WAY_M at the speed */
 #define EVENT_SHARE 3e-6
 #define EVENT_WAY_M 3e-7
-#define AT_REST_M_S 1e-5    /* slower, a position's last digit is milliseconds */
+#define AT_REST_M_S 1e-5 /* slower, a position's last digit is milliseconds */
 #define MIN_JERK_SLOPE 1.875
 #define MIN_JERK_CURVATURE 5.774
 #define ERF_SLOPE 1.1284
@@ -121,8 +121,7 @@ static quarter_t enter_quarter(const walk_t *walk, const saddle_plan_t *now)
                                (double)walk->config.vertical_intercept_m);
     const double gap = 0.5 * quarter.width - quarter.amplitude;
     const double beside_z = sqrt(pendulum_m(walk) * pendulum_m(walk) - gap * gap);
-    const double y =
-        fabs((double)now->com_m.y - (double)now->foot_m[now->support].y);
+    const double y = fabs((double)now->com_m.y - (double)now->foot_m[now->support].y);
     const double z = (double)now->com_m.z;
     if (to_landing(now)) {
         quarter.off_y = fabs(y - gap) + slack_m;
@@ -175,8 +174,9 @@ static double pitch_bound(const walk_t *walk, const quarter_t *quarter, double s
         return 0.0;
     }
     if (!is_erf(walk)) { /* leg = hypot(x, y, z); angle = 2 asin(elongation / 2 d_h) */
-        const double leg = (quarter->half * speed + 0.5 * walk->widest * move[COM_Y]) /
-                               (0.9 * pendulum_m(walk)) + move[COM_Z];
+        const double leg =
+            (quarter->half * speed + 0.5 * walk->widest * move[COM_Y]) / (0.9 * pendulum_m(walk)) +
+            move[COM_Z];
         const double cosine = fmax(cos(0.5 * toe_off), 0.2);
         return leg / ((double)walk->config.cop_range_m * cosine) + MIN_JERK_SLOPE * toe_off * r;
     }
@@ -198,8 +198,8 @@ static void com_bounds(const walk_t *walk, const quarter_t *q, double speed, bou
     const double wave = 0.5 * PI;
     /* y = A cos(wave x / L) + mismatch of value off_y and slope off_slope */
     const double dy = wave * q->amplitude + MIN_JERK_SLOPE * q->off_y + q->off_slope * q->half;
-    const double ddy = wave * wave * q->amplitude + MIN_JERK_CURVATURE * q->off_y +
-                       4.0 * q->off_slope * q->half;
+    const double ddy =
+        wave * wave * q->amplitude + MIN_JERK_CURVATURE * q->off_y + 4.0 * q->off_slope * q->half;
     /* z = const - dZ sin^2(wave x / L) + mismatch */
     const double dz = wave * q->vertical + MIN_JERK_SLOPE * q->off_z;
     const double ddz = 2.0 * wave * wave * q->vertical + MIN_JERK_CURVATURE * q->off_z;
@@ -243,7 +243,8 @@ static bounds_t walking_bounds(const walk_t *walk, const quarter_t *quarter, dou
     const double range = (double)walk->config.cop_range_m;
     const double leg = pendulum_m(walk) + 2.0 * range;
     bounds.move[COM_Z] = (leg * range * bounds.pitch + quarter->half * speed +
-                          0.5 * walk->widest * bounds.move[COM_Y]) / low;
+                          0.5 * walk->widest * bounds.move[COM_Y]) /
+                         low;
     const double tau = (double)walk->config.ankle_time_constant_s;
     const double heel = (double)walk->config.heel_strike_max_rad;
     const double way = quarter->half - range * (1.0 - cos(heel));
@@ -310,12 +311,11 @@ static void velocities(const saddle_plan_t *plan, double *v)
     }
 }
 
-static void check_moves(walk_t *walk, const saddle_plan_t *now, double dt_s,
-                        const bounds_t *bounds)
+static void check_moves(walk_t *walk, const saddle_plan_t *now, double dt_s, const bounds_t *bounds)
 {
     static const char *const NAMES[MOVES] = {
-        "CoM x jumps",       "CoM y jumps",        "CoM z jumps",
-        "left foot x jumps", "left foot y jumps",  "left foot z jumps",
+        "CoM x jumps",        "CoM y jumps",        "CoM z jumps",
+        "left foot x jumps",  "left foot y jumps",  "left foot z jumps",
         "right foot x jumps", "right foot y jumps", "right foot z jumps"};
     double p0[MOVES], p1[MOVES], v0[MOVES], v1[MOVES];
     const bool via = !same_quarter(&walk->plan, now);
@@ -329,8 +329,8 @@ static void check_moves(walk_t *walk, const saddle_plan_t *now, double dt_s,
         if (erf_z && landed) {
             continue;
         }
-        const double tail_m = erf_z && via ? 2.0 * (double)walk->config.cop_range_m * bounds->tail
-                                           : 0.0;
+        const double tail_m =
+            erf_z && via ? 2.0 * (double)walk->config.cop_range_m * bounds->tail : 0.0;
         const double move = p1[i] - p0[i];
         within(walk, move, bounds->move[i] * dt_s + JUMP_M + tail_m, &used.move[i], NAMES[i]);
         if (!erf_z) {
@@ -340,10 +340,10 @@ static void check_moves(walk_t *walk, const saddle_plan_t *now, double dt_s,
         }
     }
     for (int foot = 0; foot < 2; foot++) {
-        const double turn = (double)now->foot_pitch_rad[foot] -
-                            (double)walk->plan.foot_pitch_rad[foot];
-        within(walk, turn, bounds->pitch * dt_s + JUMP_M + (via ? bounds->tail : 0.0),
-               &used.pitch, "foot pitch jumps");
+        const double turn =
+            (double)now->foot_pitch_rad[foot] - (double)walk->plan.foot_pitch_rad[foot];
+        within(walk, turn, bounds->pitch * dt_s + JUMP_M + (via ? bounds->tail : 0.0), &used.pitch,
+               "foot pitch jumps");
     }
 }
 
@@ -386,8 +386,8 @@ static void check_stance(walk_t *walk, const saddle_plan_t *now)
 {
     const saddle_plan_t *last = &walk->plan;
     for (int foot = 0; foot < 2; foot++) {
-        const bool stands = (foot == now->support && foot == last->support) ||
-                            (!steps(now) && !steps(last));
+        const bool stands =
+            (foot == now->support && foot == last->support) || (!steps(now) && !steps(last));
         const bool moved =
             memcmp(&now->foot_m[foot], &last->foot_m[foot], sizeof now->foot_m[foot]) != 0 ||
             now->origin_x_nm != last->origin_x_nm;
@@ -402,26 +402,46 @@ static void check_mode(walk_t *walk, const saddle_plan_t *now)
         [SADDLE_MODE_STANDING] = 1u << SADDLE_MODE_STARTING,
         [SADDLE_MODE_STARTING] = 1u << SADDLE_MODE_WALKING | 1u << SADDLE_MODE_STOPPING,
         [SADDLE_MODE_WALKING] = 1u << SADDLE_MODE_STOPPING,
-        [SADDLE_MODE_STOPPING] = 1u << SADDLE_MODE_STANDING | 1u << SADDLE_MODE_STARTING |
-                                 1u << SADDLE_MODE_WALKING,
+        [SADDLE_MODE_STOPPING] =
+            1u << SADDLE_MODE_STANDING | 1u << SADDLE_MODE_STARTING | 1u << SADDLE_MODE_WALKING,
     };
     const unsigned from = walk->plan.mode;
-    expect(walk, now->mode == from || (NEXT[from] >> now->mode & 1u) != 0u,
-           "mode does not follow", (double)now->mode, (double)from);
+    expect(walk, now->mode == from || (NEXT[from] >> now->mode & 1u) != 0u, "mode does not follow",
+           (double)now->mode, (double)from);
 }
 
 static void check_finite(walk_t *walk, const saddle_plan_t *plan)
 {
-    const float values[] = {
-        plan->theta_rad, plan->speed_m_s, plan->step_length_m, plan->step_width_m,
-        plan->com_m.x, plan->com_m.y, plan->com_m.z, plan->com_velocity_m_s.x,
-        plan->com_velocity_m_s.y, plan->com_velocity_m_s.z, plan->foot_m[0].x, plan->foot_m[0].y,
-        plan->foot_m[0].z, plan->foot_m[1].x, plan->foot_m[1].y, plan->foot_m[1].z,
-        plan->foot_pitch_rad[0], plan->foot_pitch_rad[1], plan->swing_velocity_m_s.x,
-        plan->swing_velocity_m_s.y, plan->swing_velocity_m_s.z, plan->leg_length_m,
-        plan->knee_flexion_m, plan->toe_off_rad, plan->heel_strike_rad,
-        plan->time_to_via_point_s, plan->time_to_heel_strike_s, plan->time_to_toe_off_s,
-        plan->landing_m.x, plan->landing_m.y};
+    const float values[] = {plan->theta_rad,
+                            plan->speed_m_s,
+                            plan->step_length_m,
+                            plan->step_width_m,
+                            plan->com_m.x,
+                            plan->com_m.y,
+                            plan->com_m.z,
+                            plan->com_velocity_m_s.x,
+                            plan->com_velocity_m_s.y,
+                            plan->com_velocity_m_s.z,
+                            plan->foot_m[0].x,
+                            plan->foot_m[0].y,
+                            plan->foot_m[0].z,
+                            plan->foot_m[1].x,
+                            plan->foot_m[1].y,
+                            plan->foot_m[1].z,
+                            plan->foot_pitch_rad[0],
+                            plan->foot_pitch_rad[1],
+                            plan->swing_velocity_m_s.x,
+                            plan->swing_velocity_m_s.y,
+                            plan->swing_velocity_m_s.z,
+                            plan->leg_length_m,
+                            plan->knee_flexion_m,
+                            plan->toe_off_rad,
+                            plan->heel_strike_rad,
+                            plan->time_to_via_point_s,
+                            plan->time_to_heel_strike_s,
+                            plan->time_to_toe_off_s,
+                            plan->landing_m.x,
+                            plan->landing_m.y};
     float sum = 0.0f;
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
         sum += values[i] - values[i]; /* 0, or NaN from then on */
@@ -457,8 +477,8 @@ static void check_events(walk_t *walk, const saddle_plan_t *now, uint64_t us)
     if (now->mode == (uint8_t)SADDLE_MODE_STANDING) {
         return; /* until a command nothing comes */
     }
-    const bool same_step = steps(now) && steps(&walk->plan) &&
-                           now->step_count == walk->plan.step_count;
+    const bool same_step =
+        steps(now) && steps(&walk->plan) && now->step_count == walk->plan.step_count;
     if (!same_quarter(&walk->plan, now)) {
         same_event(walk, was->via_us, fmin(fmax(was->via_us, (double)walk->plan_us), (double)us),
                    0.0, speed, "a via point out of its time");
@@ -488,10 +508,9 @@ static void check_events(walk_t *walk, const saddle_plan_t *now, uint64_t us)
 
 static void check_distance(walk_t *walk, const saddle_plan_t *now, double dt_s)
 {
-    walk->way_m += 0.5 * dt_s * ((double)walk->plan.com_velocity_m_s.x +
-                                 (double)now->com_velocity_m_s.x);
-    const double way_m =
-        1e-9 * (double)now->origin_x_nm + (double)now->com_m.x - walk->first_way_m;
+    walk->way_m +=
+        0.5 * dt_s * ((double)walk->plan.com_velocity_m_s.x + (double)now->com_velocity_m_s.x);
+    const double way_m = 1e-9 * (double)now->origin_x_nm + (double)now->com_m.x - walk->first_way_m;
     within(walk, way_m - walk->way_m, DISTANCE_M, &used.distance_m,
            "the way is not the integral of the speed");
 }
@@ -552,8 +571,8 @@ static void check_limits(walk_t *walk, const saddle_output_t *output)
     const float ceiling_m_s = walk->context.model.body.speed_ceiling_m_s;
     const bool moves = command->mode == (uint8_t)SADDLE_COMMAND_WALK &&
                        !(command->speed_m_s >= 0.0f && command->speed_m_s <= 0.0f);
-    const bool limited = moves && (command->speed_m_s < SADDLE_SPEED_FLOOR_M_S ||
-                                   command->speed_m_s >= ceiling_m_s);
+    const bool limited =
+        moves && (command->speed_m_s < SADDLE_SPEED_FLOOR_M_S || command->speed_m_s >= ceiling_m_s);
     expect(walk, limited == ((output->limits & (uint32_t)SADDLE_LIMIT_SPEED) != 0u),
            "a limited speed is not told, or told of another", (double)command->speed_m_s,
            (double)ceiling_m_s);
@@ -584,8 +603,7 @@ static void query_until(walk_t *walk, uint64_t end_us)
 {
     saddle_plan_t plan;
     while (walk->plan_us < end_us && walk->failures == 0) {
-        const uint64_t us =
-            walk->plan_us + QUERY_US < end_us ? walk->plan_us + QUERY_US : end_us;
+        const uint64_t us = walk->plan_us + QUERY_US < end_us ? walk->plan_us + QUERY_US : end_us;
         if (saddle_plan_at(&walk->context, us, &plan) != SADDLE_OK) {
             expect(walk, false, "no plan until the next tick", 1e-6 * (double)us,
                    1e-6 * (double)walk->input.time_us);
@@ -613,35 +631,24 @@ static saddle_command_t random_command(walk_t *walk)
     switch (random_bits(&walk->random) >> 60) {
     case 0:
     case 1:
-    case 2:
-        break; /* speed 0 */
+    case 2: break; /* speed 0 */
     case 3:
         command.mode = SADDLE_COMMAND_STAND;
         command.speed_m_s = NAN;
         break;
-    case 4:
-        command.speed_m_s = SADDLE_SPEED_FLOOR_M_S;
-        break;
-    case 5:
-        command.speed_m_s = (float)random_in(&walk->random, 1.0, 3.0) * (float)ceiling;
-        break;
-    case 6:
-        command.speed_m_s = (float)random_in(&walk->random, -1.0, -0.001);
-        break;
-    case 7:
-        command.speed_m_s = (float)random_in(&walk->random, 0.001, 0.1);
-        break;
-    default:
-        command.speed_m_s = (float)random_in(&walk->random, 0.05, ceiling);
+    case 4: command.speed_m_s = SADDLE_SPEED_FLOOR_M_S; break;
+    case 5: command.speed_m_s = (float)random_in(&walk->random, 1.0, 3.0) * (float)ceiling; break;
+    case 6: command.speed_m_s = (float)random_in(&walk->random, -1.0, -0.001); break;
+    case 7: command.speed_m_s = (float)random_in(&walk->random, 0.001, 0.1); break;
+    default: command.speed_m_s = (float)random_in(&walk->random, 0.05, ceiling);
     }
     return command;
 }
 
 static uint64_t random_duration_us(walk_t *walk)
 {
-    return random_bits(&walk->random) >> 62 == 0u
-               ? (uint64_t)random_in(&walk->random, 0.0, 0.5e6)
-               : (uint64_t)random_in(&walk->random, 0.3e6, 8e6);
+    return random_bits(&walk->random) >> 62 == 0u ? (uint64_t)random_in(&walk->random, 0.0, 0.5e6)
+                                                  : (uint64_t)random_in(&walk->random, 0.3e6, 8e6);
 }
 
 static float random_factor(walk_t *walk, double min, double max)
@@ -675,10 +682,10 @@ static void find_extremes(walk_t *walk)
 {
     const saddle_config_t *config = &walk->config;
     const saddle_body_t *body = &walk->context.model.body;
-    const double sides = 0.5 * (double)(config->step_width_factor_left +
-                                        config->step_width_factor_right);
-    const double longer = fmax((double)config->step_length_factor_left,
-                               (double)config->step_length_factor_right);
+    const double sides =
+        0.5 * (double)(config->step_width_factor_left + config->step_width_factor_right);
+    const double longer =
+        fmax((double)config->step_length_factor_left, (double)config->step_length_factor_right);
     const double crawl = sqrt((double)(config->acceleration_m_s2 * config->half_step_intercept_m));
     walk->fastest = fmax((double)body->speed_ceiling_m_s, crawl);
     walk->longest_half = longer * ((double)config->half_step_slope_s * walk->fastest +

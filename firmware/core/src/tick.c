@@ -133,8 +133,8 @@ static saddle_intent_t intent_of(const saddle_plan_t *plan)
 }
 
 /* The plan under the command, or under a stand where the inputs are lost. */
-static SADDLE_NOINLINE void plan_walk(saddle_context_t *context, const saddle_feet_t *feet, bool stop,
-                      uint32_t dt_us, saddle_output_t *output)
+static SADDLE_NOINLINE void plan_walk(saddle_context_t *context, const saddle_feet_t *feet,
+                                      bool stop, uint32_t dt_us, saddle_output_t *output)
 {
     static const saddle_command_t stand = {(uint8_t)SADDLE_COMMAND_STAND, 0.0f, 0.0f};
     output->limits |= stop ? (uint32_t)SADDLE_LIMIT_SAFE_STOP : 0u;
@@ -145,7 +145,7 @@ static SADDLE_NOINLINE void plan_walk(saddle_context_t *context, const saddle_fe
 
 /* The measured posture against the plan. */
 static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_sensed_t *sensed,
-                      saddle_output_t *output)
+                                      saddle_output_t *output)
 {
     const saddle_intent_t intent = intent_of(&output->plan);
     output->faults |=

@@ -10,7 +10,7 @@
 
 #define SETTINGS ((const uint32_t *)0x003FF000u) /* the last page of the flash */
 
-extern uint32_t __stack[];   /* the linker's: the stack's top */
+extern uint32_t __stack[];  /* the linker's: the stack's top */
 extern char __stack_size[]; /* this one's address is the number of its bytes */
 
 static saddle_controller_t controller;

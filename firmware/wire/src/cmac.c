@@ -56,8 +56,7 @@ static void expand_key(uint8_t round_keys[BLOCK * (ROUNDS + 1u)], const uint8_t 
         const bool begins = i % BLOCK == 0u;
         for (size_t k = 0; k < 4u; ++k) {
             const uint8_t before = round_keys[i - 4u + (begins ? (k + 1u) % 4u : k)];
-            round_keys[i + k] =
-                round_keys[i + k - BLOCK] ^ (begins ? SUBSTITUTE[before] : before);
+            round_keys[i + k] = round_keys[i + k - BLOCK] ^ (begins ? SUBSTITUTE[before] : before);
         }
         if (begins) {
             round_keys[i] ^= constant;

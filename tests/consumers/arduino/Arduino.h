@@ -12,10 +12,22 @@ inline uint32_t micros()
 
 struct Port {
     void begin(long) {}
-    void print(float value, int digits) { printf("%.*f", digits, static_cast<double>(value)); }
-    void print(const char *text) { printf("%s", text); }
-    void println(const char *text) { printf("%s\n", text); }
-    void println(int value) { printf("%d\n", value); }
+    void print(float value, int digits)
+    {
+        printf("%.*f", digits, static_cast<double>(value));
+    }
+    void print(const char *text)
+    {
+        printf("%s", text);
+    }
+    void println(const char *text)
+    {
+        printf("%s\n", text);
+    }
+    void println(int value)
+    {
+        printf("%d\n", value);
+    }
 };
 
 static Port Serial;

@@ -26,8 +26,8 @@ typedef enum { SADDLE_LEFT = 0, SADDLE_RIGHT = 1 } saddle_side_t;
 /* ---- configuration ------------------------------------------------------------------------- */
 
 typedef enum {
-    SADDLE_ANKLE_ERF = 0,   /**< the paper's ankle strategy, [E12]; z jumps at heel strike */
-    SADDLE_ANKLE_RIGID = 1, /**< the inverted pendulum: the leg keeps its length */
+    SADDLE_ANKLE_ERF = 0,     /**< the paper's ankle strategy, [E12]; z jumps at heel strike */
+    SADDLE_ANKLE_RIGID = 1,   /**< the inverted pendulum: the leg keeps its length */
     SADDLE_ANKLE_CYCLOID = 2, /**< smooth z with the human amplitude, [E24]; for driving joints */
     SADDLE_ANKLE_COUNT
 } saddle_ankle_t;
@@ -38,70 +38,70 @@ typedef enum {
 typedef struct {
     float body_mass_kg;
     float body_height_m;
-    float pendulum_ratio;             /**< pendulum length / body height, [E1] */
-    float cop_range_m;                /**< d_h: CoP to heel and metatarsal pivots, [E11] [E16] */
-    float step_width_slow_m;          /**< below step_width_slow_speed_m_s, [E3] */
-    float step_width_fast_m;          /**< above step_width_fast_speed_m_s, [E3] */
+    float pendulum_ratio;    /**< pendulum length / body height, [E1] */
+    float cop_range_m;       /**< d_h: CoP to heel and metatarsal pivots, [E11] [E16] */
+    float step_width_slow_m; /**< below step_width_slow_speed_m_s, [E3] */
+    float step_width_fast_m; /**< above step_width_fast_speed_m_s, [E3] */
     float step_width_slow_speed_m_s;
     float step_width_fast_speed_m_s;
-    float step_width_slope_s;         /**< between the two speeds, [E3] */
+    float step_width_slope_s; /**< between the two speeds, [E3] */
     float step_width_intercept_m;
-    float half_step_slope_s;          /**< [E4] */
+    float half_step_slope_s; /**< [E4] */
     float half_step_intercept_m;
-    float vertical_slope_s;           /**< peak-to-peak vertical CoM excursion, [E5] */
+    float vertical_slope_s; /**< peak-to-peak vertical CoM excursion, [E5] */
     float vertical_intercept_m;
-    float lateral_factor;             /**< of the lateral CoM amplitude; 1: as printed, [E7] */
-    float peak_speed_m_s;             /**< where reach and XCoM limit meet, [E6] */
-    float ankle_time_constant_s;      /**< of the erf profile, [E12] */
-    float heel_strike_max_rad;        /**< a larger commanded angle is limited */
-    float acceleration_m_s2;          /**< largest change of the walking speed */
-    float shift_time_s;               /**< of the weight to the first stance leg, and back */
-    float step_length_factor_left;    /**< steps that the left foot makes; 1: symmetric, [E4] */
+    float lateral_factor;          /**< of the lateral CoM amplitude; 1: as printed, [E7] */
+    float peak_speed_m_s;          /**< where reach and XCoM limit meet, [E6] */
+    float ankle_time_constant_s;   /**< of the erf profile, [E12] */
+    float heel_strike_max_rad;     /**< a larger commanded angle is limited */
+    float acceleration_m_s2;       /**< largest change of the walking speed */
+    float shift_time_s;            /**< of the weight to the first stance leg, and back */
+    float step_length_factor_left; /**< steps that the left foot makes; 1: symmetric, [E4] */
     float step_length_factor_right;
-    float step_width_factor_left;     /**< left foot to the walking line; 1: symmetric, [E3] */
+    float step_width_factor_left; /**< left foot to the walking line; 1: symmetric, [E3] */
     float step_width_factor_right;
-    float swing_clearance_m;          /**< height of the swing foot at mid-swing, [E10] */
-    float tick_max_s;                 /**< the plan advances by no more than this in one tick */
-    float command_max_age_s;          /**< an older command times out: the walk stops */
-    float lost_inputs_stop;           /**< 1: lost inputs stop the walk; 0: for recordings, or a
-                                           device with a safe state of its own */
-    float resume_time_s;              /**< inputs that were lost must be good for so long */
-    float com_max_age_s;              /**< older measurements of the CoM are not used */
-    float foot_max_age_s;             /**< nor of a foot's CoP and contact */
-    float flight_max_s;               /**< both feet in the air for longer is no walking */
-    float crossing_max_m;             /**< the left CoP lies right of the right one by no more */
-    float step_time_max_s;            /**< without a heel strike for longer nobody walks */
-    float bos_factor;                 /**< share of the geometric BoS that is used; 1: the paper's */
-    float ankle_work_factor;          /**< W_max of m g d_h^2 / l_p, [E27] */
-    float stop_margin_m;              /**< of the XCoM, to stop in the present posture; -10: any, as
-                                           printed, [E36] */
-    float prediction_horizon_s;                /**< in an emergency the foot can land within this, [E28] */
-    float cop_shift_ap_m;             /**< how far the wearer can move the CoP, [E30]; 0: as printed */
+    float swing_clearance_m;    /**< height of the swing foot at mid-swing, [E10] */
+    float tick_max_s;           /**< the plan advances by no more than this in one tick */
+    float command_max_age_s;    /**< an older command times out: the walk stops */
+    float lost_inputs_stop;     /**< 1: lost inputs stop the walk; 0: for recordings, or a
+                                     device with a safe state of its own */
+    float resume_time_s;        /**< inputs that were lost must be good for so long */
+    float com_max_age_s;        /**< older measurements of the CoM are not used */
+    float foot_max_age_s;       /**< nor of a foot's CoP and contact */
+    float flight_max_s;         /**< both feet in the air for longer is no walking */
+    float crossing_max_m;       /**< the left CoP lies right of the right one by no more */
+    float step_time_max_s;      /**< without a heel strike for longer nobody walks */
+    float bos_factor;           /**< share of the geometric BoS that is used; 1: the paper's */
+    float ankle_work_factor;    /**< W_max of m g d_h^2 / l_p, [E27] */
+    float stop_margin_m;        /**< of the XCoM, to stop in the present posture; -10: any, as
+                                     printed, [E36] */
+    float prediction_horizon_s; /**< in an emergency the foot can land within this, [E28] */
+    float cop_shift_ap_m;       /**< how far the wearer can move the CoP, [E30]; 0: as printed */
     float cop_shift_ml_m;
-    float recovery_width_min_m;       /**< a recovery step is at least so wide, [E30] */
-    float recovery_width_max_m;       /**< and at most so wide */
-    float recovery_margin_m;          /**< XCoM inside the landing CoP by this, [E30] */
-    float recovery_follow;            /**< share of the XCoM's departure that the landing follows; 0:
-                                           the nearest place to the planned one, [E30] */
-    float departure_foresight;        /**< how far ahead, of 1 / natural frequency, [E33] */
-    float departure_lateral_weight;   /**< of a departure across, [E33] */
-    float departure_step_share;       /**< of half the distance of the feet: no departure, [E33] */
-    float departure_sink_share;       /**< of a sinking CoM's velocity that is, [E33] */
-    float tolerance_max;              /**< departure that a walker of even speed bears, [E34] */
-    float tolerance_ripple_slope;     /**< less tolerance per ripple of the speed, [E34] */
-    float tolerance_min;              /**< and no less than this, [E34] */
-    float plan_weight;                /**< of what the step to come can do, for a wearer on a plan, [E35] */
-    float plan_reserve;               /**< and added to that */
-    float caution_margin;             /**< a margin below it is a caution, [E31] */
-    float learn_time_s;               /**< forgetting time of mean velocity and height, [E32] */
-    float learn_ripple_time_s;        /**< and of the ripple, [E32] */
-    float learn_ripple_start;         /**< ripple before a walk was seen; of a calibrated person */
-    float learn_margin;               /**< ripple and steps are learned above this margin, [E32] */
-    float previous_level;             /**< 1: the level as 0.1.0 decided it, for comparison, [E36] */
-    float caution_score;              /**< a score below it is a caution, [E36] */
-    float caution_xcom_ap_m;          /**< XCoM off the planned one by more is a caution, [E36] */
+    float recovery_width_min_m;     /**< a recovery step is at least so wide, [E30] */
+    float recovery_width_max_m;     /**< and at most so wide */
+    float recovery_margin_m;        /**< XCoM inside the landing CoP by this, [E30] */
+    float recovery_follow;          /**< share of the XCoM's departure that the landing follows; 0:
+                                         the nearest place to the planned one, [E30] */
+    float departure_foresight;      /**< how far ahead, of 1 / natural frequency, [E33] */
+    float departure_lateral_weight; /**< of a departure across, [E33] */
+    float departure_step_share;     /**< of half the distance of the feet: no departure, [E33] */
+    float departure_sink_share;     /**< of a sinking CoM's velocity that is, [E33] */
+    float tolerance_max;            /**< departure that a walker of even speed bears, [E34] */
+    float tolerance_ripple_slope;   /**< less tolerance per ripple of the speed, [E34] */
+    float tolerance_min;            /**< and no less than this, [E34] */
+    float plan_weight;    /**< of what the step to come can do, for a wearer on a plan, [E35] */
+    float plan_reserve;   /**< and added to that */
+    float caution_margin; /**< a margin below it is a caution, [E31] */
+    float learn_time_s;   /**< forgetting time of mean velocity and height, [E32] */
+    float learn_ripple_time_s; /**< and of the ripple, [E32] */
+    float learn_ripple_start;  /**< ripple before a walk was seen; of a calibrated person */
+    float learn_margin;        /**< ripple and steps are learned above this margin, [E32] */
+    float previous_level;      /**< 1: the level as 0.1.0 decided it, for comparison, [E36] */
+    float caution_score;       /**< a score below it is a caution, [E36] */
+    float caution_xcom_ap_m;   /**< XCoM off the planned one by more is a caution, [E36] */
     float caution_xcom_ml_m;
-    float level_hold_ticks;           /**< a level holds this long before it is announced */
+    float level_hold_ticks; /**< a level holds this long before it is announced */
     saddle_ankle_t ankle;
 } saddle_config_t;
 
@@ -151,36 +151,36 @@ typedef struct {
 
 /** Why an input was not used or gave no score. */
 typedef enum {
-    SADDLE_FAULT_COMMAND = 1u << 0, /**< not usable: the last good one holds */
-    SADDLE_FAULT_COM_STALE = 1u << 1,   /**< older than com_max_age_s */
-    SADDLE_FAULT_COM_RANGE = 1u << 2,   /**< not finite or absurd */
-    SADDLE_FAULT_LEFT_STALE = 1u << 3,  /**< older than foot_max_age_s */
+    SADDLE_FAULT_COMMAND = 1u << 0,    /**< not usable: the last good one holds */
+    SADDLE_FAULT_COM_STALE = 1u << 1,  /**< older than com_max_age_s */
+    SADDLE_FAULT_COM_RANGE = 1u << 2,  /**< not finite or absurd */
+    SADDLE_FAULT_LEFT_STALE = 1u << 3, /**< older than foot_max_age_s */
     SADDLE_FAULT_LEFT_RANGE = 1u << 4,
     SADDLE_FAULT_RIGHT_STALE = 1u << 5,
     SADDLE_FAULT_RIGHT_RANGE = 1u << 6,
     SADDLE_FAULT_FEET_TOGETHER = 1u << 7,    /**< CoPs within 1 mm: no saddle space */
     SADDLE_FAULT_SPEED_INFEASIBLE = 1u << 8, /**< v_CoMp cannot be walked: no step scores */
-    SADDLE_FAULT_COM_FROZEN = 1u << 9,    /**< the same bits for com_max_age_s while the feet moved
-                                               otherwise, or a walk was planned */
-    SADDLE_FAULT_LEFT_FROZEN = 1u << 10,  /**< the same bits for foot_max_age_s while the CoM moved */
+    SADDLE_FAULT_COM_FROZEN = 1u << 9,   /**< the same bits for com_max_age_s while the feet moved
+                                              otherwise, or a walk was planned */
+    SADDLE_FAULT_LEFT_FROZEN = 1u << 10, /**< the same bits for foot_max_age_s as the CoM moved */
     SADDLE_FAULT_RIGHT_FROZEN = 1u << 11,
-    SADDLE_FAULT_AIRBORNE = 1u << 12,     /**< both feet in the air for longer than flight_max_s */
-    SADDLE_FAULT_FEET_CROSSED = 1u << 13, /**< by more than crossing_max_m */
+    SADDLE_FAULT_AIRBORNE = 1u << 12,      /**< both feet in the air for longer than flight_max_s */
+    SADDLE_FAULT_FEET_CROSSED = 1u << 13,  /**< by more than crossing_max_m */
     SADDLE_FAULT_COMMAND_STALE = 1u << 14, /**< no usable one for command_max_age_s */
     SADDLE_FAULT_COM_LOW = 1u << 15 /**< the CoM below the knees: somebody lies, or an offset */
 } saddle_fault_t;
 
 /** Faults that leave the CoM, or the feet, without a measurement to use. */
-#define SADDLE_FAULTS_COM \
+#define SADDLE_FAULTS_COM                                                  \
     ((uint32_t)SADDLE_FAULT_COM_STALE | (uint32_t)SADDLE_FAULT_COM_RANGE | \
      (uint32_t)SADDLE_FAULT_COM_FROZEN | (uint32_t)SADDLE_FAULT_COM_LOW)
-#define SADDLE_FAULTS_LEFT \
+#define SADDLE_FAULTS_LEFT                                                   \
     ((uint32_t)SADDLE_FAULT_LEFT_STALE | (uint32_t)SADDLE_FAULT_LEFT_RANGE | \
      (uint32_t)SADDLE_FAULT_LEFT_FROZEN)
-#define SADDLE_FAULTS_RIGHT \
+#define SADDLE_FAULTS_RIGHT                                                    \
     ((uint32_t)SADDLE_FAULT_RIGHT_STALE | (uint32_t)SADDLE_FAULT_RIGHT_RANGE | \
      (uint32_t)SADDLE_FAULT_RIGHT_FROZEN)
-#define SADDLE_FAULTS_FEET \
+#define SADDLE_FAULTS_FEET                                                        \
     (SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT | (uint32_t)SADDLE_FAULT_AIRBORNE | \
      (uint32_t)SADDLE_FAULT_FEET_CROSSED)
 
@@ -190,7 +190,7 @@ typedef enum {
     SADDLE_MODE_STANDING = 0,
     SADDLE_MODE_STARTING = 1, /**< weight goes to the first stance leg, then the first step */
     SADDLE_MODE_WALKING = 2,
-    SADDLE_MODE_STOPPING = 3  /**< until the feet are side by side and the CoM between them */
+    SADDLE_MODE_STOPPING = 3 /**< until the feet are side by side and the CoM between them */
 } saddle_mode_t;
 
 /** Limits that shaped an output. */
@@ -210,26 +210,26 @@ typedef enum {
 /** The plan at one instant. x is measured from the CoP of the planned stance foot, which lies at
  *  origin_x_nm from the first stance foot; y from the walking line; z from the ground. */
 typedef struct {
-    bool valid;             /**< false: the tick failed and all else is 0 */
-    uint8_t mode;           /**< saddle_mode_t */
-    uint8_t phase;          /**< 0 to 3: the quarter of the stride, from the left foot via point */
-    uint8_t support;        /**< saddle_side_t; both feet carry while standing */
-    uint32_t step_count;    /**< changes of the stance foot since the start */
-    uint32_t stride_count;  /**< times the left foot via point was passed since the start */
-    float theta_rad;        /**< gait phase within the stride, [0, 2 pi), [E8] */
-    int64_t origin_x_nm;    /**< walked distance to the stance foot; integer, so it never drifts */
+    bool valid;            /**< false: the tick failed and all else is 0 */
+    uint8_t mode;          /**< saddle_mode_t */
+    uint8_t phase;         /**< 0 to 3: the quarter of the stride, from the left foot via point */
+    uint8_t support;       /**< saddle_side_t; both feet carry while standing */
+    uint32_t step_count;   /**< changes of the stance foot since the start */
+    uint32_t stride_count; /**< times the left foot via point was passed since the start */
+    float theta_rad;       /**< gait phase within the stride, [0, 2 pi), [E8] */
+    int64_t origin_x_nm;   /**< walked distance to the stance foot; integer, so it never drifts */
     float speed_m_s, step_length_m, step_width_m; /**< of the running quarter */
     saddle_vec3_t com_m, com_velocity_m_s;
-    saddle_vec3_t foot_m[2];           /**< CoPs */
-    float foot_pitch_rad[2];           /**< sole to ground, positive heel up */
-    saddle_vec3_t swing_velocity_m_s;  /**< of the foot that is not in support */
-    float leg_length_m;                /**< stance leg */
-    float knee_flexion_m;              /**< stance leg shorter than l_p by this, cycloid only */
+    saddle_vec3_t foot_m[2];            /**< CoPs */
+    float foot_pitch_rad[2];            /**< sole to ground, positive heel up */
+    saddle_vec3_t swing_velocity_m_s;   /**< of the foot that is not in support */
+    float leg_length_m;                 /**< stance leg */
+    float knee_flexion_m;               /**< stance leg shorter than l_p by this, cycloid only */
     float toe_off_rad, heel_strike_rad; /**< ankle angles, sole to ground */
-    float time_to_via_point_s;         /**< next via point, or end of a shift of weight */
-    float time_to_heel_strike_s;       /**< next heel strike, [E12] */
-    float time_to_toe_off_s;           /**< next change of support: the swing CoP arrives */
-    saddle_vec2_t landing_m;           /**< where the swing CoP arrives */
+    float time_to_via_point_s;          /**< next via point, or end of a shift of weight */
+    float time_to_heel_strike_s;        /**< next heel strike, [E12] */
+    float time_to_toe_off_s;            /**< next change of support: the swing CoP arrives */
+    saddle_vec2_t landing_m;            /**< where the swing CoP arrives */
 } saddle_plan_t;
 
 /* ---- scores -------------------------------------------------------------------------------- */
@@ -240,10 +240,10 @@ typedef struct {
  *  share of it that a person uses. */
 typedef struct {
     saddle_vec2_t centre_m;
-    saddle_vec2_t axis_x;  /**< unit vector x_S; lambda = atan2(axis_x.y, axis_x.x) */
-    float radius_m;        /**< half the distance between the CoPs, times the share */
-    float half_depth_m;    /**< d_h, times the share */
-    bool defined;          /**< false: feet together, every number above is 0 */
+    saddle_vec2_t axis_x; /**< unit vector x_S; lambda = atan2(axis_x.y, axis_x.x) */
+    float radius_m;       /**< half the distance between the CoPs, times the share */
+    float half_depth_m;   /**< d_h, times the share */
+    bool defined;         /**< false: feet together, every number above is 0 */
 } saddle_bos_t;
 
 /** Which fields of saddle_scores_t hold a result; the others are 0. xcom_m is known whenever the
@@ -261,10 +261,10 @@ typedef enum {
 
 /** Scores of a posture, in its frame. */
 typedef struct {
-    uint32_t valid;    /**< saddle_valid_t bits */
-    float v_comp_m_s;  /**< mean AP speed over the last completed step, else the planner's */
+    uint32_t valid;       /**< saddle_valid_t bits */
+    float v_comp_m_s;     /**< mean AP speed over the last completed step, else the planner's */
     float s_pend, s_jump; /**< [E20] */
-    float s_sw;        /**< [E21] */
+    float s_sw;           /**< [E21] */
     float mos_com_m, mos_xcom_m; /**< margins in the instantaneous BoS, [E17] */
     saddle_vec2_t gravity_n;     /**< [E18] */
     float excess_stop_j;         /**< [E26] */
@@ -287,16 +287,16 @@ typedef enum {
 /** What decided the level. */
 typedef enum {
     SADDLE_REASON_NONE = 0,
-    SADDLE_REASON_INPUT = 1,     /**< unknown: the faults say which input */
-    SADDLE_REASON_NO_WALK = 2,   /**< unknown: nothing is planned, and nobody was seen to stand or to
-                                      complete a step; with previous_level, as all up to 10 but
-                                      NO_STEP */
-    SADDLE_REASON_NO_STEP = 3,   /**< the step to come does not catch the CoM */
-    SADDLE_REASON_SPEED = 4,     /**< caution, here and below: v_CoMp cannot be walked */
+    SADDLE_REASON_INPUT = 1,   /**< unknown: the faults say which input */
+    SADDLE_REASON_NO_WALK = 2, /**< unknown: nothing is planned, and nobody was seen to stand or to
+                                    complete a step; with previous_level, as all up to 10 but
+                                    NO_STEP */
+    SADDLE_REASON_NO_STEP = 3, /**< the step to come does not catch the CoM */
+    SADDLE_REASON_SPEED = 4,   /**< caution, here and below: v_CoMp cannot be walked */
     SADDLE_REASON_S_PEND = 5,
     SADDLE_REASON_S_JUMP = 6,
     SADDLE_REASON_S_SW = 7,
-    SADDLE_REASON_XCOM_AP = 8,   /**< the XCoM is off the planned one */
+    SADDLE_REASON_XCOM_AP = 8, /**< the XCoM is off the planned one */
     SADDLE_REASON_XCOM_ML = 9,
     SADDLE_REASON_OFF_TRACK = 10, /**< more energy than the ankles can bring back to the plan's */
     SADDLE_REASON_SETTLING = 11,  /**< unknown: no level has held for level_hold_ticks yet */
@@ -304,14 +304,14 @@ typedef enum {
     SADDLE_REASON_BACKWARD = 13,
     SADDLE_REASON_LEFT = 14,
     SADDLE_REASON_RIGHT = 15,
-    SADDLE_REASON_SINKING = 16    /**< or sinks */
+    SADDLE_REASON_SINKING = 16 /**< or sinks */
 } saddle_reason_t;
 
 /** Points are measured from the stance CoP, the foot that does not step. */
 typedef struct {
-    bool found;     /**< false: no place within reach helps, and landing_m is 0 */
-    bool stops;     /**< the XCoM will lie in the BoS of that posture: the step ends the walk */
-    uint8_t foot;   /**< saddle_side_t: the foot that steps */
+    bool found;   /**< false: no place within reach helps, and landing_m is 0 */
+    bool stops;   /**< the XCoM will lie in the BoS of that posture: the step ends the walk */
+    uint8_t foot; /**< saddle_side_t: the foot that steps */
     saddle_vec2_t landing_m; /**< the place nearest to the wanted one */
     float margin_m; /**< reach that is left on the scarcer axis; negative: what is lacking */
 } saddle_recovery_t;
@@ -328,10 +328,10 @@ typedef struct {
                               of the CoM's usual height, [E34] [E35] */
     float caution_below; /**< and caution at and below this, [E31] */
     bool compared;
-    bool on_track;          /**< [E27] the ankles can absorb excess_track_j */
-    float excess_track_j;   /**< [E26]; it and on_track only with SADDLE_VALID_STOP */
-    float ebos_com_m, ebos_xcom_m;  /**< margins expected in the BoS of the next heel strike (E-BoS),
-                                         [E29] */
+    bool on_track;                 /**< [E27] the ankles can absorb excess_track_j */
+    float excess_track_j;          /**< [E26]; it and on_track only with SADDLE_VALID_STOP */
+    float ebos_com_m, ebos_xcom_m; /**< margins expected in the BoS of the next heel strike (E-BoS),
+                                        [E29] */
     saddle_vec2_t xcom_deviation_m; /**< from the planned XCoM at the same phase */
     saddle_recovery_t recovery;     /**< [E30] */
 } saddle_verdict_t;
@@ -344,7 +344,7 @@ typedef struct {
     float ripple;               /**< RMS of the sagittal velocity about its mean while walking, of
                                      sqrt(g height_m); starts at learn_ripple_start */
     float step_time_s, step_length_m, step_width_m;
-    float step_margin;          /**< usual lowest margin of a step, before the plan has a say, [E34] */
+    float step_margin; /**< usual lowest margin of a step, before the plan has a say, [E34] */
 } saddle_learned_walk_t;
 
 /* ---- a tick -------------------------------------------------------------------------------- */
@@ -375,8 +375,8 @@ typedef struct {
     uint32_t limits; /**< saddle_limit_t bits */
     uint32_t faults; /**< saddle_fault_t bits */
     saddle_plan_t plan;
-    saddle_scores_t scores;   /**< of the measured posture, in the frame of the CoM */
-    saddle_verdict_t verdict; /**< the measured posture against the wearer's walk and the plan */
+    saddle_scores_t scores;     /**< of the measured posture, in the frame of the CoM */
+    saddle_verdict_t verdict;   /**< the measured posture against the wearer's walk and the plan */
     saddle_learned_walk_t walk; /**< the wearer's own, as learned so far */
 } saddle_output_t;
 

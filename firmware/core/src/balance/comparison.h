@@ -11,11 +11,11 @@
 
 /** What the supervisor takes from the planner: where the wearer is to be. */
 typedef struct {
-    bool leads;        /**< a walk is planned, or has been walked since the start */
-    bool walking;      /**< else both feet stand */
-    saddle_step_t step;      /**< the planned one, while walking */
-    saddle_com_state_t com;  /**< planned, from the planned stance CoP; while both feet stand from
-                                  midway between them */
+    bool leads;             /**< a walk is planned, or has been walked since the start */
+    bool walking;           /**< else both feet stand */
+    saddle_step_t step;     /**< the planned one, while walking */
+    saddle_com_state_t com; /**< planned, from the planned stance CoP; while both feet stand from
+                                 midway between them */
 } saddle_intent_t;
 
 /** What is known of the wearer at one instant. */
@@ -34,8 +34,7 @@ void saddle_compare_nothing(saddle_verdict_t *verdict);
  *  and CoM are known and the BoS is defined. Writes to a cleared verdict all but level and reason,
  *  nothing if there is no walk to compare with. Returns whether the wearer does as planned: makes the
  *  planned step on its stance foot, or is to stand. */
-bool saddle_compare(const saddle_model_t *model,
-                    const saddle_wearer_t *wearer, const saddle_intent_t *intent,
-                    saddle_verdict_t *verdict);
+bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
+                    const saddle_intent_t *intent, saddle_verdict_t *verdict);
 
 #endif

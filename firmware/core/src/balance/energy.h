@@ -14,7 +14,7 @@ typedef struct {
 /** What carries the CoM. */
 typedef struct {
     const saddle_vec2_t *cop_m; /**< of both feet, in the frame of the CoM's state */
-    const saddle_bos_t *bos; /**< of them */
+    const saddle_bos_t *bos;    /**< of them */
     saddle_surface_t at_com;
 } saddle_support_t;
 

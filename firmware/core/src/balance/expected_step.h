@@ -10,9 +10,9 @@
 /** A step of a steady walk. */
 typedef struct {
     saddle_side_t stance;
-    float speed_m_s;       /**< > 0 */
-    float half_behind_m;   /**< from the foot via point back to the last landing, > 0 */
-    float width_behind_m;  /**< between the lines of the feet then */
+    float speed_m_s;         /**< > 0 */
+    float half_behind_m;     /**< from the foot via point back to the last landing, > 0 */
+    float width_behind_m;    /**< between the lines of the feet then */
     saddle_vec2_t landing_m; /**< of the swing CoP */
 } saddle_step_t;
 

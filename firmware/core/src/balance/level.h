@@ -6,9 +6,8 @@
 
 /** Decide and announce. faults: of the inputs and of the scores. Reads the margin and what the
  *  comparison wrote to *verdict and writes its level and reason. */
-void saddle_level_update(saddle_level_state_t *state, const saddle_model_t *model,
-                         uint32_t faults, const saddle_scores_t *scores,
-                         saddle_verdict_t *verdict);
+void saddle_level_update(saddle_level_state_t *state, const saddle_model_t *model, uint32_t faults,
+                         const saddle_scores_t *scores, saddle_verdict_t *verdict);
 
 /** No level holds over what is not known: begin again. */
 void saddle_level_reset(saddle_level_state_t *state);

@@ -21,7 +21,7 @@ saddle_departure_t saddle_departure(const saddle_model_t *model, const saddle_le
 
 /** [E34] Tolerance of the learned walk less the departure. */
 float saddle_own_margin(const saddle_model_t *model, const saddle_learning_t *learning,
-                         const saddle_departure_t *departure);
+                        const saddle_departure_t *departure);
 
 /** [E35] What the plan adds to the margin of a wearer whom it leads: how well the step to come
  *  catches the CoM. verdict: compared with the plan. */

@@ -9,14 +9,14 @@
 /** What a recovery step starts from. */
 typedef struct {
     saddle_side_t stance;
-    saddle_vec2_t landing_m; /**< planned */
-    saddle_vec2_t xcom_m;    /**< planned, when the foot lands */
+    saddle_vec2_t landing_m;   /**< planned */
+    saddle_vec2_t xcom_m;      /**< planned, when the foot lands */
     saddle_vec2_t departure_m; /**< of the expected XCoM from there */
-    float step_time_s;       /**< of the steps after it */
+    float step_time_s;         /**< of the steps after it */
 } saddle_recovery_target_t;
 
-void saddle_recovery_step(const saddle_model_t *model,
-                          const saddle_recovery_target_t *target, saddle_recovery_t *recovery);
+void saddle_recovery_step(const saddle_model_t *model, const saddle_recovery_target_t *target,
+                          saddle_recovery_t *recovery);
 
 /** How far the wearer can move the CoP from where it is planned, along one axis. */
 typedef struct {

@@ -27,7 +27,7 @@ saddle_vec2_t saddle_bos_exit_m(const saddle_bos_t *bos, saddle_vec2_t point_m,
 /** The energy surface U = m g z_s at a place, over the CoP that carries, the nearer one. */
 typedef struct {
     saddle_vec2_t lever_m; /**< from that CoP to the place */
-    float height_m; /**< z_s; 0 where the pendulum does not reach */
+    float height_m;        /**< z_s; 0 where the pendulum does not reach */
     bool reached;
 } saddle_surface_t;
 

@@ -9,7 +9,7 @@
 typedef enum {
     SADDLE_KNOWN_FEET = 1u << 0,
     SADDLE_KNOWN_VELOCITY = 1u << 1,
-    SADDLE_KNOWN_SPEED = 1u << 2,     /**< v_comp_m_s */
+    SADDLE_KNOWN_SPEED = 1u << 2, /**< v_comp_m_s */
     SADDLE_KNOWN_HALF_STEP = 1u << 3,
     SADDLE_KNOWN_ALL = (1u << 4) - 1u
 } saddle_known_t;

@@ -114,7 +114,8 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
         saddle_learning_gap(&supervisor->learning);
     }
     if (com_known && feet_known) {
-        const float own = measure_margin(model, &supervisor->learning, measurement, on_plan, verdict);
+        const float own =
+            measure_margin(model, &supervisor->learning, measurement, on_plan, verdict);
         if ((faults & (uint32_t)SADDLE_FAULT_COM_LOW) == 0u) {
             learn(supervisor, model, own, dt_s);
         } else {

@@ -19,7 +19,7 @@
 #define SPEED_MAX ((int64_t)4 << 42)
 
 #define RATE_MAX_M_S2 15.9999990f /* the largest float below 16 */
-#define TIME_MAX_S 1.99999988f /* the largest float below 2 */
+#define TIME_MAX_S 1.99999988f    /* the largest float below 2 */
 #define DT_MAX_US 10000000u
 
 static float limited(float value, float max)

@@ -8,7 +8,7 @@
 #error "Saddlewalk: -ffinite-math-only removes its checks for NaN"
 #endif
 #if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0 && __FLT_EVAL_METHOD__ != 16
-#error                                                                                             \
+#error \
     "Saddlewalk: float must be evaluated as float; on 32-bit x86 compile with -msse2 -mfpmath=sse"
 #endif
 

@@ -16,8 +16,7 @@ typedef struct {
 float saddle_step_width_m(const saddle_model_t *model, float speed_m_s);
 
 /** Any finite speed; for speed <= 0 not feasible. */
-saddle_step_bounds_t saddle_step_bounds(const saddle_model_t *model,
-                                        float speed_m_s);
+saddle_step_bounds_t saddle_step_bounds(const saddle_model_t *model, float speed_m_s);
 
 /** [E4] Half the step that a foot makes, exact in the speed; speed >= 0. */
 saddle_fixed_t saddle_half_step(const saddle_model_t *model, saddle_side_t foot,

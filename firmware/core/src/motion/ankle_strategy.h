@@ -20,9 +20,9 @@ saddle_transition_t saddle_transition(const saddle_model_t *model, const saddle_
 
 /** Ankle angles, sole to ground. */
 typedef struct {
-    float toe_off_rad;     /**< at most pi/2, the sole upright */
+    float toe_off_rad; /**< at most pi/2, the sole upright */
     float heel_strike_rad;
-    bool limited;          /**< toe_off_rad would be more */
+    bool limited; /**< toe_off_rad would be more */
 } saddle_ankle_angles_t;
 
 /** [E12] The angles since_strike_s after the nearest heel strike (negative: before it). */

@@ -5,7 +5,7 @@
 #include <saddlewalk/private/context.h>
 
 typedef struct {
-    saddle_vec3_t position_m;   /**< CoP, from the stance CoP; z from the ground */
+    saddle_vec3_t position_m; /**< CoP, from the stance CoP; z from the ground */
     saddle_vec3_t velocity_m_s;
 } saddle_swing_state_t;
 

@@ -10,7 +10,7 @@
 
 /** What a cycle says at one instant, from the stance CoP; y from there too. */
 typedef struct {
-    float progress;               /**< of the quarter, [0, 1] */
+    float progress; /**< of the quarter, [0, 1] */
     saddle_vec3_t com_m, com_velocity_m_s;
     saddle_swing_state_t swing;
     saddle_ankle_state_t ankle;
@@ -20,20 +20,21 @@ typedef struct {
 
 /** Where a walk begins. */
 typedef struct {
-    uint8_t phase;            /**< 0 or 2: CoM beside the stance foot; 1 or 3: midway to it */
+    uint8_t phase; /**< 0 or 2: CoM beside the stance foot; 1 or 3: midway to it */
     float stance_y_m;
-    saddle_vec2_t other_m;    /**< the other foot, from the stance CoP */
-    float com_y_m, com_z_m;   /**< from the stance CoP; z from the ground */
+    saddle_vec2_t other_m;  /**< the other foot, from the stance CoP */
+    float com_y_m, com_z_m; /**< from the stance CoP; z from the ground */
     saddle_fixed_t speed;
-    float heel_strike_rad;    /**< of the first landing */
-    bool under_way;           /**< the other foot is in mid-swing: a steady walk is joined */
+    float heel_strike_rad; /**< of the first landing */
+    bool under_way;        /**< the other foot is in mid-swing: a steady walk is joined */
 } saddle_cycle_start_t;
 
 /** Stand, no step under way, with the stance foot at stance_y_m from the walking line. */
 void saddle_cycle_stand(saddle_cycle_t *cycle, saddle_side_t stance, float stance_y_m);
 
 /** Begin to walk. Counts and distance go on; the pace is as it was. */
-void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model, const saddle_cycle_start_t *start);
+void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
+                        const saddle_cycle_start_t *start);
 
 /** From now on towards a speed at a rate. */
 void saddle_cycle_set_pace(saddle_cycle_t *cycle, float speed_m_s, float rate_m_s2);
@@ -43,12 +44,13 @@ void saddle_cycle_set_last_swing(saddle_cycle_t *cycle, bool last_swing);
 
 /** Walk on for dt_us. Returns the microseconds left when a last swing ended with zero speed beside
  *  the stance foot; 0 while it walks on. At most eight via points are passed. */
-uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model, float heel_strike_rad, uint32_t dt_us,
-                              bool *arrived);
+uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model,
+                              float heel_strike_rad, uint32_t dt_us, bool *arrived);
 
 /** Take over a landing: the step that the stance foot really made. False, and nothing changes, if
  *  it is too late in the step or the foot lies where no plan can go on from. */
-bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m) SADDLE_NOINLINE;
+bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model,
+                       saddle_vec2_t step_m) SADDLE_NOINLINE;
 
 /** Whether the running quarter leads to a saddle via point, where the swing foot lands. */
 bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);
@@ -59,6 +61,7 @@ float saddle_cycle_distance_to_via_point_m(const saddle_cycle_t *cycle);
 /** The pose's com_m.y alone. */
 float saddle_cycle_com_y_m(const saddle_cycle_t *cycle);
 
-void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model, saddle_pose_t *pose);
+void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                       saddle_pose_t *pose);
 
 #endif

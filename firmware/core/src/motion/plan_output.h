@@ -8,6 +8,7 @@
 uint32_t saddle_plan_horizon_us(const saddle_planner_t *planner);
 
 /** The plan of the present state. Returns SADDLE_LIMIT_TOE_OFF or 0. */
-uint32_t saddle_plan_write(const saddle_planner_t *planner, const saddle_model_t *model, saddle_plan_t *plan);
+uint32_t saddle_plan_write(const saddle_planner_t *planner, const saddle_model_t *model,
+                           saddle_plan_t *plan);
 
 #endif

@@ -48,7 +48,8 @@ static uint32_t check_com(const saddle_model_t *model, const saddle_measurement_
     if ((float)measurement->com.age_us > model->body.com_max_age_us) {
         return (uint32_t)SADDLE_FAULT_COM_STALE;
     }
-    if (!saddle_in_range(measurement->com.height_m, COM_HEIGHT_MIN_M, model->config.body_height_m) ||
+    if (!saddle_in_range(measurement->com.height_m, COM_HEIGHT_MIN_M,
+                         model->config.body_height_m) ||
         !vec2_within(measurement->com.velocity_m_s, COM_SPEED_MAX_M_S)) {
         return (uint32_t)SADDLE_FAULT_COM_RANGE;
     }

@@ -9,6 +9,7 @@
  *  knees (0.285 of the body's height) or above the body's height, faster than 6 m/s along x or y; a
  *  CoP beyond 2.5 m along x or y. Returns saddle_fault_t bits. */
 uint32_t saddle_measurement_check(saddle_plausibility_t *plausibility, const saddle_model_t *model,
-                      const saddle_measurement_t *measurement, float planned_m_s, float dt_s);
+                                  const saddle_measurement_t *measurement, float planned_m_s,
+                                  float dt_s);
 
 #endif

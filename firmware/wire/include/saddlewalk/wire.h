@@ -74,7 +74,7 @@ typedef struct {
     uint32_t latency_us;      /**< of this tick, behind its time */
     uint32_t latency_max_us;  /**< of all */
     uint8_t command_source;   /**< has authority: 0 none, 1 CAN, 2 LCM */
-    uint32_t input_age_us[SADDLE_WIRE_MEASURED_RIGHT + 1]; /**< by message */
+    uint32_t input_age_us[SADDLE_WIRE_MEASURED_RIGHT + 1];           /**< by message */
     uint32_t accepted, malformed, bad_crc, bad_version, bad_counter; /**< the receiver's */
 } saddle_wire_health_t;
 
@@ -90,9 +90,9 @@ typedef struct {
     bool demanded;
     bool opened; /**< a session; before the first no code is valid */
     saddle_cmac_key_t key;
-    uint32_t session;   /**< a code is valid in its session only */
-    uint16_t freshness; /**< of the last valid code; the next must be higher */
-    bool waits;         /**< a code was received and its COMMAND not yet */
+    uint32_t session;                  /**< a code is valid in its session only */
+    uint16_t freshness;                /**< of the last valid code; the next must be higher */
+    bool waits;                        /**< a code was received and its COMMAND not yet */
     uint8_t frame[SADDLE_WIRE_LENGTH]; /**< that code's */
 } saddle_wire_guard_t;
 
@@ -100,10 +100,10 @@ typedef struct {
 typedef struct {
     saddle_wire_alive_t alive[SADDLE_WIRE_MESSAGE_COUNT];
     uint32_t accepted;
-    uint32_t malformed;   /**< wrong length, or an identifier that the firmware does not receive */
+    uint32_t malformed; /**< wrong length, or an identifier that the firmware does not receive */
     uint32_t bad_crc;
-    uint32_t bad_version; /**< COMMAND of another wire version */
-    uint32_t bad_counter; /**< repeated, or out of step */
+    uint32_t bad_version;  /**< COMMAND of another wire version */
+    uint32_t bad_counter;  /**< repeated, or out of step */
     uint8_t other_version; /**< of the last one with a bad version */
     uint32_t bad_code;     /**< COMMAND without a code, or with one that is wrong or not fresh */
     saddle_wire_guard_t guard;

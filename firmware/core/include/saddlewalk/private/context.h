@@ -25,16 +25,16 @@ typedef struct {
     float speed_ceiling_m_s;       /**< no speed at or above it is planned, [E6] */
     float half_step_slope_s[2];    /**< of the step that each foot makes, [E4] */
     saddle_fixed_t half_step_intercept[2];
-    float ankle_work_j;            /**< W_max, [E27] */
-    float horizon_growth;        /**< of a deviation within prediction_horizon_s, [E29], */
-    float horizon_free_growth;   /**< and of that once the trailing foot has lifted off */
-    float com_height_min_m;        /**< a lower CoM is below the knees */
-    float crawl_m_s;               /**< a stop goes on at no less until it brakes, */
-    float braked_in_a_step_m_s;    /**< and at no more: every step is long enough to brake from it */
-    float braked_in_a_tick_m_s;    /**< what the longest tick can brake */
+    float ankle_work_j;         /**< W_max, [E27] */
+    float horizon_growth;       /**< of a deviation within prediction_horizon_s, [E29], */
+    float horizon_free_growth;  /**< and of that once the trailing foot has lifted off */
+    float com_height_min_m;     /**< a lower CoM is below the knees */
+    float crawl_m_s;            /**< a stop goes on at no less until it brakes, */
+    float braked_in_a_step_m_s; /**< and at no more: every step is long enough to brake from it */
+    float braked_in_a_tick_m_s; /**< what the longest tick can brake */
     float command_max_age_us, com_max_age_us, foot_max_age_us; /**< to compare ages with */
     uint32_t tick_max_us;
-    uint32_t shift_us;             /**< of a shift of weight */
+    uint32_t shift_us; /**< of a shift of weight */
 } saddle_body_t;
 
 typedef struct {
@@ -81,51 +81,51 @@ typedef struct {
     float line_y_m;                     /**< where it lands, from the stance CoP */
     saddle_vec2_t offset_m;             /**< from the line to where it lifted off: fades out */
     float clearance_m;
-    float path_width_m;                 /**< of the quarter whose lateral path is followed */
+    float path_width_m; /**< of the quarter whose lateral path is followed */
 } saddle_swing_t;
 
 /** One step-to-step transition. */
 typedef struct {
-    float heel_strike_rad;  /**< commanded angle of the foot at heel strike */
-    float toe_off_rad;      /**< toe-off angle when the heel strikes, [E13] */
+    float heel_strike_rad;    /**< commanded angle of the foot at heel strike */
+    float toe_off_rad;        /**< toe-off angle when the heel strikes, [E13] */
     float heel_strike_lead_m; /**< CoM distance from heel strike to saddle via point, [E12] */
-    bool toe_off_limited;   /**< the geometry asks for an angle outside [0, pi] */
+    bool toe_off_limited;     /**< the geometry asks for an angle outside [0, pi] */
 } saddle_transition_t;
 
 /** The gait cycle. Every length is measured from the stance CoP, y from the walking line. */
 typedef struct {
     saddle_speed_profile_t profile;
-    saddle_fixed_t position;      /**< CoM x, in [-quarter, quarter] */
+    saddle_fixed_t position; /**< CoM x, in [-quarter, quarter] */
     saddle_fixed_t quarter_length;
     saddle_quarter_t quarter;
-    uint8_t phase;                /**< 0 to 3; even: towards the saddle via point */
-    bool last_swing;              /**< the running step ends beside the stance foot: a stop */
-    uint32_t step_count;          /**< changes of the stance foot */
-    uint32_t stride_count;        /**< times that phase 0 was entered again */
-    int64_t origin_x_nm;          /**< distance to the stance foot */
+    uint8_t phase;         /**< 0 to 3; even: towards the saddle via point */
+    bool last_swing;       /**< the running step ends beside the stance foot: a stop */
+    uint32_t step_count;   /**< changes of the stance foot */
+    uint32_t stride_count; /**< times that phase 0 was entered again */
+    int64_t origin_x_nm;   /**< distance to the stance foot */
     float stance_y_m;
-    saddle_blend_t lateral;       /**< mismatch of CoM y */
-    saddle_blend_t vertical;      /**< mismatch of CoM z, cycloid only */
+    saddle_blend_t lateral;  /**< mismatch of CoM y */
+    saddle_blend_t vertical; /**< mismatch of CoM z, cycloid only */
     saddle_swing_t swing;
-    float lift_pitch_rad;         /**< of the swing foot when it lifted off */
-    float heel_strike_rad;        /**< of the last heel strike */
-    float next_heel_strike_rad;   /**< of the next one */
-    float next_lead_m;            /**< of the CoM from there to the saddle via point, [E12] */
+    float lift_pitch_rad;           /**< of the swing foot when it lifted off */
+    float heel_strike_rad;          /**< of the last heel strike */
+    float next_heel_strike_rad;     /**< of the next one */
+    float next_lead_m;              /**< of the CoM from there to the saddle via point, [E12] */
     saddle_transition_t transition; /**< of the nearest saddle via point, erf and rigid only */
-    saddle_vec2_t last_step_m;    /**< from the old stance foot to the new one */
+    saddle_vec2_t last_step_m;      /**< from the old stance foot to the new one */
 } saddle_cycle_t;
 
 typedef struct {
     uint8_t mode;
-    bool shifting;          /**< time moves the CoM between the feet, not the gait cycle */
-    bool braking;           /**< a stop has begun that ends beside the stance foot */
-    float speed_m_s;        /**< wanted, feasible; 0: stand */
-    float heel_strike_rad;  /**< wanted, in range */
-    uint32_t shift_us;      /**< since the shift began */
+    bool shifting;         /**< time moves the CoM between the feet, not the gait cycle */
+    bool braking;          /**< a stop has begun that ends beside the stance foot */
+    float speed_m_s;       /**< wanted, feasible; 0: stand */
+    float heel_strike_rad; /**< wanted, in range */
+    uint32_t shift_us;     /**< since the shift began */
     saddle_vec2_t shift_from_m, shift_to_m; /**< CoM from the stance CoP */
-    saddle_vec2_t other_m;  /**< the other foot, from the stance CoP, while both stand */
-    uint8_t start_phase;    /**< where the cycle begins after the shift */
-    bool landing_open;      /**< the last landing has not been compared with the measured one */
+    saddle_vec2_t other_m; /**< the other foot, from the stance CoP, while both stand */
+    uint8_t start_phase;   /**< where the cycle begins after the shift */
+    bool landing_open;     /**< the last landing has not been compared with the measured one */
     saddle_cycle_t cycle;
 } saddle_planner_t;
 
@@ -142,39 +142,39 @@ typedef struct {
     saddle_vec2_t velocity_m_s, cop_m[2]; /**< last accepted */
     float height_m;
     saddle_frozen_timer_t com_timer, foot_timer[2];
-    saddle_vec2_t anchor_m[2]; /**< where a foot on the ground should stay: CoP + moved_m of the CoM,
-                                    since it landed or the CoM is still */
+    saddle_vec2_t anchor_m[2]; /**< where a foot on the ground should stay: CoP + moved_m of the
+                                    CoM, since it landed or the CoM is still */
     bool stood[2];             /**< the foot was on the ground at the last check */
-    float planned_distance_m;       /**< since the CoM is still */
+    float planned_distance_m;  /**< since the CoM is still */
     bool com_contradicted;     /**< a foot has left its place, or the plan has */
-    float flight_s;      /**< since both feet are in the air */
+    float flight_s;            /**< since both feet are in the air */
 } saddle_plausibility_t;
 
 /** Heel strikes, and what the last step was like. */
 typedef struct {
     float step_distance_m, step_duration_s; /**< since the last heel strike */
     float last_velocity_m_s;
-    float v_comp_m_s;      /**< mean AP speed over the last completed step; after a disturbed one it
-                                has changed by 0.1 m/s at most */
-    float step_time_s;     /**< of the last completed step; known with v_comp_m_s */
-    float half_step_m;     /**< half of what the landed foot was ahead at the last heel strike */
-    float step_width_m;    /**< of the feet then, left minus right */
+    float v_comp_m_s;   /**< mean AP speed over the last completed step; after a disturbed one it
+                             has changed by 0.1 m/s at most */
+    float step_time_s;  /**< of the last completed step; known with v_comp_m_s */
+    float half_step_m;  /**< half of what the landed foot was ahead at the last heel strike */
+    float step_width_m; /**< of the feet then, left minus right */
     float since_strike_s;
-    float airborne_s[2];   /**< since the foot left the ground; 0 on it */
-    bool step_open;        /**< a heel strike was seen and the velocity was known ever since */
+    float airborne_s[2]; /**< since the foot left the ground; 0 on it */
+    bool step_open;      /**< a heel strike was seen and the velocity was known ever since */
     bool v_comp_known, half_step_known; /**< step_width_m goes with half_step_m */
-    bool struck;           /**< a heel strike came with the last measurement */
-    bool disturbed;        /**< set by the supervisor, until a heel strike: v_comp_m_s hardly follows
-                                the step now made, so that it does not follow a fall */
-    bool stands;           /**< was seen to stand, and no step was completed since */
-    uint8_t stance;        /**< saddle_side_t: the only foot on the ground, else the one that landed last */
+    bool struck;                        /**< a heel strike came with the last measurement */
+    bool disturbed; /**< set by the supervisor, until a heel strike: v_comp_m_s hardly follows
+                         the step now made, so that it does not follow a fall */
+    bool stands;    /**< was seen to stand, and no step was completed since */
+    uint8_t stance; /**< saddle_side_t: the only foot on the ground, else the last that landed */
 } saddle_step_tracker_t;
 
 typedef struct {
-    bool armed;    /**< a measurement has come: from then on all are needed */
-    bool stopped;  /**< inputs were lost, and have not been good for resume_time_s since */
-    float lost_s;  /**< since a measurement was last usable */
-    float good_s;  /**< since all that is needed is usable */
+    bool armed;   /**< a measurement has come: from then on all are needed */
+    bool stopped; /**< inputs were lost, and have not been good for resume_time_s since */
+    float lost_s; /**< since a measurement was last usable */
+    float good_s; /**< since all that is needed is usable */
 } saddle_safe_state_t;
 
 /* ---- balance -------------------------------------------------------------------------------- */
@@ -184,20 +184,20 @@ typedef struct {
     saddle_learned_walk_t walk;
     saddle_vec2_t velocity_m_s; /**< last measured */
     float ripple_square;
-    float watched_s, walked_s; /**< learned from, up to the forgetting time */
+    float watched_s, walked_s;          /**< learned from, up to the forgetting time */
     float last_height_m, same_height_s; /**< the last that was new, and since when */
-    float climb_m_s;           /**< vertical velocity of the CoM, over 80 ms */
-    float lowest_margin;       /**< since the last heel strike */
-    bool height_known;         /**< the last tick measured the CoM */
-    bool begun;                /**< a margin was known */
+    float climb_m_s;                    /**< vertical velocity of the CoM, over 80 ms */
+    float lowest_margin;                /**< since the last heel strike */
+    bool height_known;                  /**< the last tick measured the CoM */
+    bool begun;                         /**< a margin was known */
 } saddle_learning_t;
 
 typedef struct {
-    uint8_t level, reason;       /**< announced */
-    uint8_t caution_reason;      /**< of the last caution */
-    uint8_t unstable_reason;     /**< and of the last unstable tick */
-    uint8_t at_least_ticks[4];   /**< for how long the level has been this one or worse */
-    uint8_t at_most_ticks[4];    /**< and this one or better */
+    uint8_t level, reason;     /**< announced */
+    uint8_t caution_reason;    /**< of the last caution */
+    uint8_t unstable_reason;   /**< and of the last unstable tick */
+    uint8_t at_least_ticks[4]; /**< for how long the level has been this one or worse */
+    uint8_t at_most_ticks[4];  /**< and this one or better */
 } saddle_level_state_t;
 
 typedef struct {
