@@ -25,7 +25,7 @@ void saddle_inbox_take_command(saddle_inbox_t *inbox, saddle_source_t source,
     } else {
         inbox->authority = source;
         inbox->input.command = *command;
-        ++inbox->commands_obeyed;
+        ++inbox->commands_applied;
         note_arrival(inbox, SADDLE_WIRE_COMMAND, time_us);
     }
 }

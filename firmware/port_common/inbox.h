@@ -27,7 +27,7 @@ typedef struct {
     uint32_t came; /**< bits of the messages received so far */
     uint32_t set;  /**< bits of the messages with set_counter since the last read */
     uint8_t set_counter;
-    uint32_t commands_obeyed;
+    uint32_t commands_applied;
     uint32_t commands_unusable; /**< unknown mode, non-finite number, or not a command_t */
     uint32_t commands_ignored;  /**< of the source without authority */
     uint32_t commands_foreign;  /**< by LCM from another machine, where that is not accepted */

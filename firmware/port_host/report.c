@@ -72,7 +72,7 @@ static void tell_inputs(saddlewalk_status_t *message, const saddle_inbox_t *inbo
     message->com_age_us = age_message(input->measurement.com.age_us);
     message->left_age_us = age_message(input->measurement.foot[SADDLE_LEFT].age_us);
     message->right_age_us = age_message(input->measurement.foot[SADDLE_RIGHT].age_us);
-    message->commands_obeyed = inbox->commands_obeyed;
+    message->commands_obeyed = inbox->commands_applied;
     message->commands_unusable = inbox->commands_unusable;
     message->commands_ignored = inbox->commands_ignored;
     message->commands_foreign = inbox->commands_foreign;
@@ -129,7 +129,7 @@ void saddle_report_print(const saddle_report_t *report)
            " without link, %" PRIu64 " LCM messages\n",
            timing->ticks, timing->late_ticks, timing->missed_ticks, receiver->accepted,
            receiver->bad_crc, receiver->bad_counter, receiver->bad_version, receiver->bad_code,
-           receiver->malformed, inbox->commands_obeyed, inbox->commands_unusable,
+           receiver->malformed, inbox->commands_applied, inbox->commands_unusable,
            inbox->commands_ignored, inbox->commands_foreign, report->bus->no_room,
            report->bus->no_link, report->lcm->not_sent);
 }

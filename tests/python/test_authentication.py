@@ -90,7 +90,7 @@ def test_what_is_authenticated_is_accepted_and_nothing_else(codec):
     assert (guarded.receiver.bad_code, guarded.receiver.accepted) == (1, 80)
 
 
-def test_a_replay_is_refused_in_its_session_and_in_the_next(codec):
+def test_a_replay_is_rejected_in_its_session_and_in_the_next(codec):
     guarded, sender = Guarded(codec), wire.Sender()
     authenticator = speaking(guarded)
     recorded = [authenticator.frames(sender, **WALK) for _ in range(22)]
@@ -106,7 +106,7 @@ def test_a_replay_is_refused_in_its_session_and_in_the_next(codec):
     assert guarded.accepts(*authenticator.frames(sender, **WALK))
 
 
-def test_every_changed_bit_is_refused(codec):
+def test_every_changed_bit_is_rejected(codec):
     """Under a right CRC: of the command but for its version, and of the code."""
     for which, bits in ((0, range(12, 64)), (1, [*range(12, 48), *range(56, 64)])):
         for bit in bits:
@@ -127,7 +127,7 @@ def test_a_code_is_for_one_try(codec):
     assert guarded.receiver.bad_code == 2
 
 
-def test_another_key_is_refused(codec):
+def test_another_key_is_rejected(codec):
     guarded = Guarded(codec, key=bytes(16))
     assert not guarded.accepts(*speaking(guarded).frames(wire.Sender(), **WALK))
 
@@ -140,7 +140,7 @@ def key_file(tmp_path):
     return path
 
 
-def test_the_host_obeys_who_has_the_key_and_counts_who_has_not(key_file):
+def test_the_host_applies_who_has_the_key_and_counts_who_has_not(key_file):
     with Host("--lcm=none", "--clock=lockstep", "--command-key", str(key_file)) as host:
         assert f"; commands: by CAN, authenticated with the key in {key_file}\n" in host.first_line
         authenticator = Authenticator(KEY)
@@ -212,6 +212,6 @@ def test_a_new_key_is_new_and_its_owners_alone(tmp_path):
         write_new_key(tmp_path / "one")
 
 
-def test_a_key_of_another_length_is_refused():
+def test_a_key_of_another_length_is_rejected():
     with pytest.raises(UserError, match="has 15 bytes: give 16"):
         Authenticator(bytes(15))

@@ -120,7 +120,7 @@ def bare(tmp_path) -> Path:
     return folder
 
 
-def test_glib_is_installed_for_root_who_is_told_in_one_line(bare, tmp_path):
+def test_glib_is_installed_for_root_who_is_reported_in_one_line(bare, tmp_path):
     result = bootstrap("python", tmp_path / "venv", PATH=f"{bare}:{os.environ['PATH']}")
     assert (result.returncode, result.stderr) == (0, "")
     assert result.stdout.count("\n") == 1 and "installing libglib2.0-0" in result.stdout

@@ -92,7 +92,7 @@ class TestBus:
         assert nodes[0].recv(0) is None
         assert SILENCE_S <= time.monotonic() - start < WAIT_S
 
-    def test_it_says_what_it_is(self, nodes, spec):
+    def test_it_reports_what_it_is(self, nodes, spec):
         assert spec.partition(":")[2] in describe(nodes[0])
 
     def test_the_firmware_answers_each_set_of_measurements(self, spec):

@@ -57,7 +57,7 @@ def refusal(capsys, *arguments: str) -> str:
     return printed.err
 
 
-def test_a_recording_that_is_given_twice_is_refused(write, capsys, tmp_path):
+def test_a_recording_that_is_given_twice_is_rejected(write, capsys, tmp_path):
     walk = write(walk_of(PERSON, 1.0))
     printed = refusal(capsys, "calibrate", walk, walk, "--out", str(tmp_path / "person.toml"))
     assert walk in printed and "twice" in printed
@@ -228,7 +228,7 @@ def test_bad_mapping_is_named(text, named, tmp_path, capsys):
     assert named in refusal(capsys, "calibrate", source, "--markers", str(mapping))
 
 
-def test_without_toes_the_steps_are_not_told_and_the_rest_is(tmp_path, capsys):
+def test_without_toes_the_steps_are_not_reported_and_the_rest_is(tmp_path, capsys):
     markers = laboratory(walk_of(PERSON, 1.0), LABORATORIES["z up, walking along -y"])
     del markers["Ann:LTOE"], markers["Ann:RTOE"]
     found = calibrated(tmp_path, trc_file(tmp_path / "walk.trc", markers))
@@ -244,7 +244,7 @@ def moved(walk: Recording, **offset_m: np.ndarray) -> Recording:
     )
 
 
-def test_what_a_recording_does_not_tell_is_said_with_the_reason(write, tmp_path, capsys):
+def test_what_a_recording_does_not_tell_is_reported_with_the_reason(write, tmp_path, capsys):
     walk = walk_of(PERSON, 1.0)
     up = np.array([0, 0, 1.0])
     calibrated(tmp_path, write(moved(walk, com_m=up, heel_m=up, toe_m=up)))
@@ -288,13 +288,13 @@ def scaled(walk: Recording, factor: np.ndarray) -> Recording:
         ),
     ],
 )
-def test_values_outside_human_range_are_refused_by_name(change, named, write, capsys):
+def test_values_outside_human_range_are_rejected_by_name(change, named, write, capsys):
     error = refusal(capsys, "calibrate", write(change(walk_of(PERSON, 1.0))))
     assert any(text in error for text in named.split("|")), error
     assert "walk.csv" in error
 
 
-def test_walks_that_give_no_model_are_refused_by_the_field(write, tmp_path, capsys):
+def test_walks_that_give_no_model_are_rejected_by_the_field(write, tmp_path, capsys):
     out = tmp_path / "person.toml"
     slow, fast = ({"half_step_slope_s": 0.001, "half_step_intercept_m": m} for m in (0.33, 0.2))
     walks = [write(walk_of(slow, 0.7), "a.csv"), write(walk_of(fast, 1.0), "b.csv")]
@@ -303,7 +303,7 @@ def test_walks_that_give_no_model_are_refused_by_the_field(write, tmp_path, caps
     assert not out.exists()
 
 
-def test_height_that_is_not_the_walker_s_is_refused(write, capsys):
+def test_height_that_is_not_the_walker_s_is_rejected(write, capsys):
     source = write(walk_of(PERSON, 1.0))
     assert "0.44 of it; human: 0.45 to 0.65" in refusal(
         capsys, "calibrate", source, "--height", "2.1"
@@ -319,7 +319,7 @@ def test_height_that_is_not_the_walker_s_is_refused(write, capsys):
         ("walk.c3d", "", "not a C3D file"),
     ],
 )
-def test_file_that_is_none_of_its_kind_is_refused(name, text, named, tmp_path, capsys):
+def test_file_that_is_none_of_its_kind_is_rejected(name, text, named, tmp_path, capsys):
     path = tmp_path / name
     path.write_text(text)
     assert named in refusal(capsys, "calibrate", str(path))
@@ -349,7 +349,7 @@ def test_bad_trc_is_named(old, new, named, tmp_path, capsys):
     assert named in refusal(capsys, "calibrate", str(path))
 
 
-def test_c3d_without_ezc3d_says_what_to_install(monkeypatch, tmp_path, capsys):
+def test_c3d_without_ezc3d_reports_what_to_install(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     assert "pip install -e '.[c3d]'" in refusal(capsys, "calibrate", str(tmp_path / "a.c3d"))
 
@@ -448,7 +448,7 @@ def test_calibrated_plan_follows_the_walk_that_it_made(known, write, person, tmp
     assert "walk.csv" in capsys.readouterr().out
 
 
-def test_follow_tells_a_long_name_on_one_line_where_there_is_no_terminal(tmp_path, capsys):
+def test_follow_reports_a_long_name_on_one_line_where_there_is_no_terminal(tmp_path, capsys):
     path = tmp_path / f"{'long_' * 12}.csv"
     path.write_text(csv_text(walk_of({}, 1.0)))
     assert main(["follow", str(path)]) == 0
@@ -472,7 +472,7 @@ def test_follow_compares_the_foot_that_swings(write, tmp_path):
     assert rows["default"]["landing_m"] < 0.002
 
 
-def test_follow_says_that_a_speed_is_out_of_reach(write, tmp_path, capsys):
+def test_follow_reports_that_a_speed_is_out_of_reach(write, tmp_path, capsys):
     small = {"half_step_slope_s": 0.05}
     config = tmp_path / "small.toml"
     config.write_text("".join(f"{name} = {value}\n" for name, value in small.items()))
@@ -480,7 +480,7 @@ def test_follow_says_that_a_speed_is_out_of_reach(write, tmp_path, capsys):
     assert "(calibrated)" in " ".join(capsys.readouterr().out.split())
 
 
-def test_walk_with_no_steps_is_refused():
+def test_walk_with_no_steps_is_rejected():
     still = Walk(speed_m_s=1e-3, step_length_m=1e-3).recording()
     with pytest.raises(UserError, match="no walk"):
         measure(still)

@@ -57,7 +57,7 @@ def test_a_link_given_as_output_stays_a_link(tmp_path):
     assert sorted(tmp_path.iterdir()) == [link, target]
 
 
-def test_a_copy_without_its_checkout_says_how_to_install(monkeypatch, tmp_path, capsys):
+def test_a_copy_without_its_checkout_reports_how_to_install(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(paths, "CHECKOUT", tmp_path)
     assert main(PLAN) == 2
     error = capsys.readouterr().err

@@ -120,7 +120,7 @@ def test_the_dbc_has_the_words_of_the_headers(message, signal):
     assert line_of(message, signal, TABLES[message, signal]) in text.splitlines()
 
 
-def test_the_dbc_says_what_is_not_available():
+def test_the_dbc_reports_what_is_not_available():
     for message in DATABASE.messages:
         for signal in message.signals:
             choices = {number: str(word) for number, word in (signal.choices or {}).items()}

@@ -153,7 +153,7 @@ def test_a_branch_is_no_call_of_what_the_linker_named_after_its_address(monkeypa
 
 
 @on_controller
-def test_a_configuration_that_saddle_init_refuses_is_told():
+def test_a_configuration_that_saddle_init_rejects_is_reported():
     with (
         pytest.raises(UserError, match=r"saddle_init: status 2, body_mass_kg"),
         qemu.running_controller(configuration({"body_mass_kg": math.nan})),
@@ -177,7 +177,7 @@ def test_a_settings_page_with_a_flipped_bit_is_not_walked_by(tmp_path, monkeypat
     assert printed.count("\n") == 1 and "settings: the page is damaged" in printed
 
 
-def test_a_controller_that_is_silent_is_told_without_advice_for_the_host(
+def test_a_controller_that_is_silent_is_reported_without_advice_for_the_host(
     tmp_path, monkeypatch, capsys, line
 ):
     @contextlib.contextmanager
@@ -207,7 +207,7 @@ def test_what_is_missing_is_named(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("option", [["--clock", "realtime"], ["--can", "udp"]])
-def test_what_a_controller_cannot_do_is_refused(tmp_path, capsys, option):
+def test_what_a_controller_cannot_do_is_rejected(tmp_path, capsys, option):
     assert demo(tmp_path / "out", "--firmware", "qemu-m4", *option) == 2
     printed = capsys.readouterr().err
     assert printed.count("\n") == 1 and " ".join(option) in printed

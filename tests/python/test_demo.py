@@ -109,7 +109,7 @@ def test_demo_in_lockstep_gives_the_same_bits_each_time(tmp_path, ports):
     assert one == two != other
 
 
-def test_a_fall_is_told_and_is_not_sound(tmp_path, ports, capsys, monkeypatch):
+def test_a_fall_is_reported_and_is_not_sound(tmp_path, ports, capsys, monkeypatch):
     from saddlewalk.commands import demo as command
 
     monkeypatch.setattr(command, "LINE_S", 0.0)
@@ -192,7 +192,7 @@ def test_demo_in_real_time(tmp_path, ports):
     assert len(rows(tmp_path)) >= 2 / TICK_S - 2
 
 
-def test_demo_refuses_a_bus_on_which_somebody_walks(tmp_path, ports, capsys):
+def test_demo_rejects_a_bus_on_which_somebody_walks(tmp_path, ports, capsys):
     from saddlewalk.emulation.host import running_host
 
     assert demo(tmp_path, ports, "--duration", "1") == 0
@@ -225,7 +225,7 @@ def test_firmware_and_wearer_have_the_body_that_was_asked_for(tmp_path, ports):
     assert float(walk[-1]["pushed_y_n_s"]) == pytest.approx(8 * 45 / 63.3, abs=1e-6)
 
 
-def test_demo_says_where_it_cannot_write(tmp_path, ports, capsys):
+def test_demo_reports_where_it_cannot_write(tmp_path, ports, capsys):
     (tmp_path / "file").write_text("")
     assert demo(tmp_path / "file" / "demo", ports) == 2
     shown = capsys.readouterr().err
@@ -289,7 +289,7 @@ def test_firmware_that_starts_slowly_is_sent_each_measurement_once(ports):
     assert exoskeleton.frames_sent == 10 * 4 + 1  # command and measurements; the last command
 
 
-def test_emulate_without_firmware_says_so(ports, capsys, monkeypatch):
+def test_emulate_without_firmware_reports_it(ports, capsys, monkeypatch):
     from saddlewalk.emulation import exoskeleton
 
     monkeypatch.setattr(exoskeleton, "SILENCE_S", 0.3)

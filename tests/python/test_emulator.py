@@ -372,7 +372,7 @@ def test_unperturbed_walk_varies_as_that_of_people(speed_m_s):
     assert np.abs(error.imag).max() <= 0.067
 
 
-def test_measurements_are_noisy_as_said():
+def test_measurements_are_noisy_as_reported():
     wearer = Wearer(noise=Noise(position_m=0.002, velocity_m_s=0.02))
     seen = [wearer.measure() for _ in range(2000)]
     heights = np.array([m.height_m for m in seen])

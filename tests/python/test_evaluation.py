@@ -198,7 +198,7 @@ def test_trials_are_drawn_alike_for_both_kinds_and_spread_over_what_is_promised(
     assert draw(6, 0, "planned", MASS_KG) != trials[0]
 
 
-def test_a_push_that_fells_is_foreseen_and_judged_by_its_ticks():
+def test_a_push_that_fells_is_foreseen_and_checked_by_its_ticks():
     config = default_config()
     trial = replace(draw(1, 0, "planned", MASS_KG), impulse_n_s=60.0, direction_deg=90.0)
     course = run(trial, config)
@@ -235,7 +235,7 @@ def test_a_staircase_pushes_harder_until_the_wearer_falls():
     assert (impulses[1] < impulses[0]) == fell
 
 
-def test_the_command_tells_and_writes(tmp_path, capsys):
+def test_the_command_reports_and_writes(tmp_path, capsys):
     gait, out = tmp_path / "gait", tmp_path / "out"
     gait.mkdir()
     (gait / "somebody.csv").write_text(csv_text(RecordedWalk().recording()))

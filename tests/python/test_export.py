@@ -160,7 +160,7 @@ def test_what_is_no_log_is_one_line_and_nothing_is_written(
     assert [path.name for path in tmp_path.iterdir()] == ["log"]
 
 
-def test_a_log_of_others_is_refused_and_others_in_ours_are_told(walk, tmp_path, capsys):
+def test_a_log_of_others_is_rejected_and_others_in_ours_are_reported(walk, tmp_path, capsys):
     path = tmp_path / "others.lcmlog"
     log = lcm.EventLog(str(path), "w")
     log.write_event(1, "CAMERA", b"picture")

@@ -77,7 +77,7 @@ def test_delay_keeps_the_order_and_reordering_does_not():
     assert [a.born_s for a in arrivals] != sorted(a.born_s for a in arrivals)
 
 
-def test_duplicates_are_refused_by_their_counter():
+def test_duplicates_are_rejected_by_their_counter():
     _, arrivals = sent_by("duplicate", 3)
     receiver = wire.Receiver()
     taken = [receiver.accept(arrival.frame) is not None for arrival in arrivals]
@@ -122,7 +122,7 @@ def test_one_or_two_flipped_bits_never_pass_the_crc(bits):
     assert receiver.bad_crc == len(forged)
 
 
-def test_spoofed_frames_have_a_right_crc_and_are_refused_for_their_counter():
+def test_spoofed_frames_have_a_right_crc_and_are_rejected_for_their_counter():
     _, arrivals = sent_by("spoof", 1.0)
     receiver = wire.Receiver()
     taken = {False: 0, True: 0}
@@ -177,7 +177,7 @@ def test_a_wrong_scenario_is_named(tmp_path, text, named):
     assert "\n" not in str(error.value)
 
 
-def test_the_device_tells_the_ages_of_what_it_was_given():
+def test_the_device_reports_the_ages_of_what_it_was_given():
     device, sender = Device(CONFIG), wire.Sender()
     for late_us, name in enumerate(MESSAGES):
         assert device.take(sender.frame(name, **STANDING[name]), 1_000_000 + late_us * 10_000)
@@ -243,7 +243,7 @@ def test_the_judge_finds_what_must_not_be(steady):
     assert violations_in(history, usable=False) == {NO_STOP}
 
 
-def test_a_walk_that_never_ends_though_it_is_said_to_stop_is_found(steady):
+def test_a_walk_that_never_ends_though_it_is_reported_to_stop_is_found(steady):
     history = steady[1]
     for number in range(20, len(history)):
         history = changed(history, number, "HEALTH", LIMITS=1 << 5)
@@ -352,7 +352,7 @@ def test_emulate_has_a_bus_that_fails(tmp_path, capsys):
         (FAULT.replace("loss", "stall"), [], "stall happens to the firmware"),
     ],
 )
-def test_what_emulate_cannot_do_is_said(tmp_path, capsys, fault, options, named):
+def test_what_emulate_cannot_do_is_reported(tmp_path, capsys, fault, options, named):
     path = tmp_path / "scenario.toml"
     path.write_text(WALK + fault)
     assert main(["emulate", "--lcm", own_lcm(), "--faults", str(path), *options]) == 2

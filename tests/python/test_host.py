@@ -180,7 +180,7 @@ def test_parameters_reach_the_core():
     ("ankle", "turns", "bends"),
     [("erf", True, False), ("rigid", False, False), ("cycloid", True, True)],
 )
-def test_ankle_models_are_told_apart(ankle, turns, bends):
+def test_ankle_models_are_reported_apart(ankle, turns, bends):
     with lockstep("--ankle", ankle, *QUICK) as host:
         host.send("COMMAND", **WALK)
         pitches, knees = [], []
@@ -234,7 +234,7 @@ def test_a_flood_stops_neither_the_ticks_nor_the_end():
         assert ticks >= 3
 
 
-def test_lcm_says_what_can_says():
+def test_lcm_reports_what_can_reports():
     url = own_lcm()
     with Host("--lcm", url, "--clock", "lockstep") as host:
         node = LcmNode(url)

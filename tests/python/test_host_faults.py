@@ -56,7 +56,7 @@ def until(node: LcmNode, channel: str, is_so, ticks: int = 60):
     raise AssertionError(f"{channel} never was so in {ticks} ticks")
 
 
-def test_silence_of_the_commands_stops_the_walk_and_is_said_in_the_same_tick():
+def test_silence_of_the_commands_stops_the_walk_and_is_reported_in_the_same_tick():
     with Host("--lcm=none", "--clock=lockstep", *QUICK) as host:
         for _ in range(20):
             host.send("COMMAND", **WALK)
@@ -75,7 +75,7 @@ def test_silence_of_the_commands_stops_the_walk_and_is_said_in_the_same_tick():
         assert STOPPING in modes[3:] and modes[-1] == STANDING_MODE
 
 
-def test_the_first_that_commands_is_obeyed_and_the_other_counted():
+def test_the_first_that_commands_is_applied_and_the_other_counted():
     url = own_lcm()
     with Host("--lcm", url, COMMAND_HOLDS, *QUICK) as host:
         node = LcmNode(url)
@@ -123,7 +123,7 @@ def test_a_chosen_source_is_the_only_one(chosen):
         assert status.commands_obeyed == 1
 
 
-def test_another_wire_version_is_refused_by_name_and_said_once():
+def test_another_wire_version_is_rejected_by_name_and_reported_once():
     url = own_lcm()
     with Host("--lcm", url) as host:
         node = LcmNode(url)
@@ -291,7 +291,7 @@ def full_pipe() -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("read", [True, False])
-def test_nobody_reads_what_it_says_and_it_goes_on(read):
+def test_nobody_reads_what_it_reports_and_it_goes_on(read):
     """Neither a full pipe nor one without a reader holds up a tick."""
     reading, writing = full_pipe()
     with Host("--lcm=none", stderr=writing) as host:
@@ -338,7 +338,7 @@ def without_rights() -> None:
     resource.setrlimit(resource.RLIMIT_MEMLOCK, (0, 0))
 
 
-def test_refused_rights_are_said_and_done_without():
+def test_rejected_rights_are_reported_and_done_without():
     command = [paths.built("bin/saddlewalk-host"), "--lcm=none", "--can=udp", "--fifo=20"]
     process = subprocess.Popen(command, stdout=-1, stderr=-1, text=True, preexec_fn=without_rights)
     first_line = process.stdout.readline()
@@ -351,7 +351,7 @@ def test_refused_rights_are_said_and_done_without():
 
 
 @in_private_network
-def test_an_interface_that_is_named_is_said_to_leave_this_machine():
+def test_an_interface_that_is_named_is_reported_to_leave_this_machine():
     """Loopback under another name, for want of another interface."""
     spec = private_udp()
     with Host("--lcm=none", spec=f"{spec}@lo") as host:

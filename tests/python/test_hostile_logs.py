@@ -264,7 +264,7 @@ def test_a_channel_by_another_name_is_another(short, tmp_path, capsys):
     assert len((tmp_path / "log-csv" / "plan.csv").read_text().splitlines()) == SHORT_TICKS + 1
 
 
-def test_gaps_of_a_rerun_are_counted_and_the_first_told(short, tmp_path, capsys):
+def test_gaps_of_a_rerun_are_counted_and_the_first_reported(short, tmp_path, capsys):
     inputs = [e for e in LcmLog(short) if e.channel in ("SADDLEWALK_INPUT", "SADDLEWALK_CONFIG")]
     log = write_log(tmp_path / "log", [*inputs, *inputs[3:], *inputs[3:]] * 30)
     printed = run(["rerun"], log, capsys)[1]
@@ -307,7 +307,7 @@ def mutated(data: bytes, rng: random.Random) -> bytes:
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
-def test_a_mutated_log_is_reported_or_refused(short, tmp_path, capsys, unseen, command):
+def test_a_mutated_log_is_reported_or_rejected(short, tmp_path, capsys, unseen, command):
     rng, data, log = random.Random(7), short.read_bytes(), tmp_path / "log"
     statuses = set()
     for _ in range(60):
@@ -333,7 +333,7 @@ def test_messages_of_random_bits_are_drawn(short, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("suffix", [".log", ".blf", ".asc", ".trc", ".csv"])
-def test_a_mutated_can_log_is_rerun_or_refused(walk, tmp_path, capsys, suffix):
+def test_a_mutated_can_log_is_rerun_or_rejected(walk, tmp_path, capsys, suffix):
     log, rng = tmp_path / f"walk{suffix}", random.Random(9)
     with can.LogReader(walk / "walk.candump.log") as frames, can.Logger(log) as writer:
         for frame in itertools.islice(frames, 1000):
@@ -373,7 +373,7 @@ def test_a_blf_log_without_end_ends(tmp_path, capsys, kind):
     assert "an object has 0 bytes" in run(["rerun"], log, capsys)[2]
 
 
-def test_a_blf_log_that_unpacks_to_gigabytes_is_refused(tmp_path, capsys):
+def test_a_blf_log_that_unpacks_to_gigabytes_is_rejected(tmp_path, capsys):
     log = tmp_path / "log.blf"
     log.write_bytes(blf(bytes(20 << 20)))
     assert "a container has more than" in run(["rerun"], log, capsys)[2]
@@ -391,7 +391,7 @@ def test_a_blf_log_that_unpacks_to_gigabytes_is_refused(tmp_path, capsys):
         ("a.db", "SQLite format 3", "neither an LCM log nor a CAN log"),
     ],
 )
-def test_frames_that_are_none_are_told(tmp_path, capsys, name, text, named):
+def test_frames_that_are_none_are_reported(tmp_path, capsys, name, text, named):
     log = tmp_path / name
     log.write_text(text)
     status, out, err = run(["rerun"], log, capsys)

@@ -150,7 +150,7 @@ def test_fresh_data_are_not_called_old(silent_s):
     assert "no message" not in dashboard.summary(heard(silent_s=silent_s))
 
 
-def test_silence_of_more_than_a_second_is_said():
+def test_silence_of_more_than_a_second_is_reported():
     words = "no message from the firmware for 1.4 s"
     assert words in drawn(heard(silent_s=1.4))
     assert words in dashboard.summary(heard(silent_s=1.4))
@@ -244,7 +244,7 @@ def test_after_a_fall_no_score_is_shown():
     assert "█" not in drawn(heard(fallen=True)).split("S_pend")[1]
 
 
-def test_the_listener_knows_of_a_fall_while_it_is_told_of_one():
+def test_the_listener_knows_of_a_fall_while_it_is_reported_of_one():
     from saddlewalk.transport.lcm_types import truth_t
 
     listener, truth = Listener(), truth_t()
@@ -269,7 +269,7 @@ def test_a_level_and_a_reason_of_other_firmware_are_given_by_number():
     assert "level: level 9, reason 99" in drawn(heard(verdict=message))
 
 
-def test_no_recovery_step_is_said_and_by_how_much():
+def test_no_recovery_step_is_reported_and_by_how_much():
     message = verdict()
     message.recovery_found, message.recovery_margin_m = 0, -0.12
     assert dashboard.recovery_step(message) == "none within reach, 0.12 m short"
@@ -286,7 +286,7 @@ def test_a_recovery_step_back_to_the_left_that_ends_the_walk():
     assert text.endswith(", ends the walk")
 
 
-def test_energies_that_are_not_known_are_not_judged():
+def test_energies_that_are_not_known_are_not_checked():
     message = verdict()
     message.excess_stop_j = message.excess_track_j = math.nan
     assert dashboard.energy(message) == "to stop n/a, to the plan n/a"
@@ -300,7 +300,7 @@ def test_energies_that_are_not_known_are_not_judged():
         ((), "inputs not yet valid for long enough"),
     ],
 )
-def test_a_safe_stop_is_said_with_what_is_missing(faults, words):
+def test_a_safe_stop_is_reported_with_what_is_missing(faults, words):
     message = health()
     assert "SAFE STOP" not in dashboard.condition(message)
     message.limits = 1 << contract.LIMITS.index("SAFE_STOP")
@@ -308,11 +308,11 @@ def test_a_safe_stop_is_said_with_what_is_missing(faults, words):
     assert dashboard.condition(message).endswith(f"; SAFE STOP, the walk ends: {words}")
 
 
-def test_what_was_refused_is_told_by_cause():
+def test_what_was_rejected_is_reported_by_cause():
     assert "900 frames accepted, 5 bad version, wire" in status_text.inputs(status())
 
 
-def test_who_commanded_before_is_not_said_to_command_now():
+def test_who_commanded_before_is_not_reported_to_command_now():
     """Authority ends with the walk that nobody commands any more."""
     message = status()
     message.command_source, message.command_age_us = status_t.SOURCE_NONE, 377_548_000
@@ -321,13 +321,13 @@ def test_who_commanded_before_is_not_said_to_command_now():
     assert status_text.inputs(message).startswith("inputs: no commands yet, ")
 
 
-def test_commands_from_other_machines_are_told():
+def test_commands_from_other_machines_are_reported():
     message = status()
     message.commands_foreign = 20
     assert "20 commands from other machines" in status_text.inputs(message)
 
 
-def test_a_process_without_troubles_has_none_told():
+def test_a_process_without_troubles_has_none_reported():
     message = status_t()
     message.can_link = message.lcm_link = status_t.LINK_UP
     message.fifo_priority, message.memory_locked = 20, 1
@@ -357,11 +357,11 @@ def test_names_are_those_of_the_status(kind, names):
         assert getattr(status_t, f"{kind}_{name.upper().replace('-', '_')}") == number
 
 
-def test_a_failed_tick_is_said_and_no_numbers_of_a_plan():
+def test_a_failed_tick_is_reported_and_no_numbers_of_a_plan():
     assert dashboard.gait(plan_t()) == "plan: none"
 
 
-def test_standing_is_said_without_the_numbers_of_a_step():
+def test_standing_is_reported_without_the_numbers_of_a_step():
     message = plan()
     message.mode = plan_t.MODE_STANDING
     assert dashboard.gait(message) == "plan: standing after 17 steps"

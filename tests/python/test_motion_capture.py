@@ -83,7 +83,7 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize(("damage", "words"), DAMAGED.values(), ids=DAMAGED)
-def test_damaged_c3d_is_refused_by_what_does_not_fit(damage, words, c3d, tmp_path):
+def test_damaged_c3d_is_rejected_by_what_does_not_fit(damage, words, c3d, tmp_path):
     path = tmp_path / "walk.c3d"
     path.write_bytes(damage(c3d))
     with pytest.raises(UserError, match=words) as refused:
@@ -191,7 +191,7 @@ def test_unit_that_is_not_given_is_the_one_in_which_the_walker_is_human(unit, tm
     assert loaded.source == f"walk.c3d, no unit in the file, {unit} assumed"
 
 
-def test_unit_that_is_not_given_and_does_not_follow_is_refused(tmp_path):
+def test_unit_that_is_not_given_and_does_not_follow_is_rejected(tmp_path):
     path = tmp_path / "walk.c3d"
     c3d_file(path, {name: xyz * 7 for name, xyz in markers().items()})
     with pytest.raises(UserError, match="no unit in the file, and none fits: the pelvis is 6"):
@@ -257,7 +257,7 @@ def test_a_pair_of_markers_is_the_point_between_them(pair, tmp_path):
         assert getattr(loaded, points) == pytest.approx(getattr(known, points), abs=1e-6)
 
 
-def test_two_people_in_one_file_are_told_apart_only_by_the_mapping(tmp_path):
+def test_two_people_in_one_file_are_reported_apart_only_by_the_mapping(tmp_path):
     both = markers() | {name.replace("Ann", "Bob"): xyz + 1e3 for name, xyz in markers().items()}
     path = trc_file(tmp_path / "walk.trc", both)
     with pytest.raises(UserError, match="Ann:LASI and Bob:LASI may each be front"):

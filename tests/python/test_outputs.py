@@ -139,7 +139,7 @@ def commands() -> dict[str, argparse.ArgumentParser]:
 FILE_WORDS = {"FILE", "FOLDER", "LOG", "OUT", "TRIAL.csv", "RECORDING", "report.html"}
 
 
-def test_every_option_that_names_a_file_says_whether_it_is_written():
+def test_every_option_that_names_a_file_reports_whether_it_is_written():
     """Else check_files() would not know it."""
     for name, command in commands().items():
         for action in command._actions:
@@ -178,7 +178,7 @@ def other_names(target: Path, folder: Path, suffix: str) -> list[Path]:
 
 
 @pytest.mark.parametrize("writer", FILES, ids=str)
-def test_an_output_that_is_an_input_is_refused(writer, mine, tmp_path, refused):
+def test_an_output_that_is_an_input_is_rejected(writer, mine, tmp_path, refused):
     before = contents(tmp_path / "inputs")
     for name in inputs_of(writer):
         folder = tmp_path / name
@@ -189,7 +189,7 @@ def test_an_output_that_is_an_input_is_refused(writer, mine, tmp_path, refused):
 
 
 @pytest.mark.parametrize("writer", FOLDERS, ids=str)
-def test_a_folder_that_would_lose_an_input_is_refused(writer, mine, tmp_path, refused):
+def test_a_folder_that_would_lose_an_input_is_rejected(writer, mine, tmp_path, refused):
     """The input is what the command would write there; or the folder is that of the input."""
     for name in inputs_of(writer):
         folder = tmp_path / name
@@ -201,7 +201,7 @@ def test_a_folder_that_would_lose_an_input_is_refused(writer, mine, tmp_path, re
 
 
 @pytest.mark.parametrize("writer", WRITERS, ids=str)
-def test_an_output_that_cannot_be_written_is_refused(writer, inputs, tmp_path, refused):
+def test_an_output_that_cannot_be_written_is_rejected(writer, inputs, tmp_path, refused):
     name = writer.out
     (tmp_path / "file").write_bytes(OLD)
     refused(writer, inputs, tmp_path / "file" / name)
@@ -233,7 +233,7 @@ def nobody(inputs) -> Iterator[Path]:
 
 
 @pytest.mark.parametrize("writer", WRITERS, ids=str)
-def test_an_output_that_is_write_protected_is_refused(writer, inputs, nobody, refused):
+def test_an_output_that_is_write_protected_is_rejected(writer, inputs, nobody, refused):
     out = nobody / "folder" / writer.out
     file = out / writer.holds[0] if writer.holds else out
     file.parent.mkdir(parents=True)
@@ -348,7 +348,7 @@ def test_a_file_that_is_replaced_keeps_its_permissions(tmp_path):
 
 
 @pytest.mark.parametrize("suffix", ["docx", "", "csv"])
-def test_a_picture_of_no_known_format_is_refused_before_the_plan(inputs, capsys, suffix):
+def test_a_picture_of_no_known_format_is_rejected_before_the_plan(inputs, capsys, suffix):
     words = ["plan", "--schedule", str(inputs["schedule"]), "--picture", f"x.{suffix}"]
     assert main(words) == 2
     printed = capsys.readouterr()

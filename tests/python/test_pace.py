@@ -120,7 +120,7 @@ def test_stalls_are_kept_with_their_time_and_the_longest_before_a_fall_is_found(
     )
 
 
-def test_a_fall_after_a_stall_of_the_computer_is_said_to_be_one(tmp_path):
+def test_a_fall_after_a_stall_of_the_computer_is_reported_to_be_one(tmp_path):
     program = [sys.executable, "-c", "from saddlewalk.cli import main; raise SystemExit(main())"]
     walk = ["demo", "--speed", "1.2", "--duration", "4.5", "--push", "80@3:90"]
     ports = ["--can", private_udp(), "--lcm", own_lcm(), "--out", str(tmp_path)]

@@ -87,7 +87,7 @@ def test_core_of_one_file_exports_its_interface_alone():
     assert exported == runpy.run_path(str(CHECKOUT / "tools/amalgamate.py"))["interface"]()
 
 
-def test_two_modules_with_one_name_are_refused_in_one_file(tmp_path):
+def test_two_modules_with_one_name_are_rejected_in_one_file(tmp_path):
     amalgamate = runpy.run_path(str(CHECKOUT / "tools/amalgamate.py"))
     paths = [tmp_path / "a.c", tmp_path / "b.c"]
     for path in paths:
@@ -132,7 +132,7 @@ def test_the_wire_builds_without_cmake_to_the_same_frames(installed, tmp_path):
     assert run(tmp_path / "plain").stdout == run(tmp_path / "frames").stdout
 
 
-def test_find_package_refuses_another_version(installed, tmp_path):
+def test_find_package_rejects_another_version(installed, tmp_path):
     found = {"CMAKE_PREFIX_PATH": installed, "WANTED": "99.0"}
     result = configure("find_package", tmp_path, check=False, **found)
     assert result.returncode != 0
@@ -286,14 +286,14 @@ def outcome(tmp_path: Path, program: str, sources: list[Path], *flags: str) -> i
         ),
     ],
 )
-def test_flags_that_change_results_are_refused(flags, tmp_path):
+def test_flags_that_change_results_are_rejected(flags, tmp_path):
     got = outcome(
         tmp_path, CHECK, [CORE / "src/math/rounding.c"], "-ffp-contract=off", *flags.split()
     )
     assert got == ERROR_BUILD or re.search("error: .*Saddlewalk: ", str(got))
 
 
-def test_a_contracted_multiply_add_is_refused_by_init(tmp_path):
+def test_a_contracted_multiply_add_is_rejected_by_init(tmp_path):
     fused = ["-mfma"] if platform.machine() == "x86_64" else []
     if fused and " fma " not in Path("/proc/cpuinfo").read_text():
         pytest.skip("this processor has no fused multiply-add")

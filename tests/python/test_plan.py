@@ -114,7 +114,7 @@ def test_lateral_stability_minimum_is_the_paper_s(speed, minimum, capsys):
 
 
 @pytest.mark.parametrize(("speed", "share"), [(0.3, 0.76), (0.5, 0.55), (0.7, 0.41), (1.0, 0.0)])
-def test_xcom_runs_ahead_of_the_base_as_the_model_says(speed, share, capsys):
+def test_xcom_runs_ahead_of_the_base_as_the_model_reports(speed, share, capsys):
     rows = plan(capsys, "--speed", str(speed), "--dt", "0.002")
     inside = [float(row["mos_xcom_m"]) > 0 for row in rows]
     assert np.mean(inside) == pytest.approx(share, abs=0.01)
@@ -138,7 +138,7 @@ def test_columns_are_those_of_the_contract_and_numbers_are_lossless(capsys):
     assert all(float(np.float32(row["com_z_m"])) == float(row["com_z_m"]) for row in rows)
 
 
-def test_speed_above_the_ceiling_is_limited_and_said(capsys):
+def test_speed_above_the_ceiling_is_limited_and_reported(capsys):
     assert main(["plan", "--speed", "2.5"]) == 0
     captured = capsys.readouterr()
     assert "--speed 2.5" in captured.err and "limited to 1.916 m/s" in captured.err

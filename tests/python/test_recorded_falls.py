@@ -94,7 +94,7 @@ def first_alarm_s(walk: dict[str, str], rows: list[dict[str, str]]) -> float:
     return min((t for t in times if float(walk["push_time_s"]) <= t < fall_s), default=math.nan)
 
 
-def test_rates_are_those_of_what_supervise_says(folder, announced):
+def test_rates_are_those_of_what_supervise_reports(folder, announced):
     found = evaluate(folder)["twin"]
     pushed = [walk for walk in table(folder / "walks.csv") if walk["push_time_s"]]
     alarms = {walk["run"]: first_alarm_s(walk, announced[walk["run"]]) for walk in pushed}
@@ -111,7 +111,7 @@ def test_rates_are_those_of_what_supervise_says(folder, announced):
     assert found["alarms_though_upright"] == sum(upright)
 
 
-def test_steady_levels_are_those_of_what_supervise_says(folder, announced):
+def test_steady_levels_are_those_of_what_supervise_reports(folder, announced):
     found = evaluate(folder)["twin"]
     for run, begin_s in ((RUNS[0], 1.0 + 2.0), (RUNS[1], 1.0)):
         rows = announced[run.name]
@@ -176,7 +176,7 @@ def test_noise_and_a_tick_of_latency_stand_beside_the_exact_figures(folder):
     assert exact == other["twin"]
 
 
-def test_walkers_have_their_own_body_unless_the_configuration_says_otherwise(folder, tmp_path):
+def test_walkers_have_their_own_body_unless_the_configuration_reports_otherwise(folder, tmp_path):
     (tmp_path / "other.toml").write_text("body_height_m = 1.5\nlevel_hold_ticks = 1\n")
     own = evaluate(folder)["twin"]
     assert own["config"] == {"body_mass_kg": "63.30", "body_height_m": "1.7900"}
@@ -189,7 +189,7 @@ def test_walkers_have_their_own_body_unless_the_configuration_says_otherwise(fol
     assert {**other, "config": None} != {**own, "config": None}
 
 
-def test_the_command_tells_and_draws(folder, tmp_path, capsys):
+def test_the_command_reports_and_draws(folder, tmp_path, capsys):
     out = tmp_path / "out"
     evaluate(folder, "--out", str(out))
     printed = " ".join(capsys.readouterr().out.split())
@@ -283,7 +283,7 @@ def test_a_missing_margin_is_no_evidence():
     assert figures(scores, {})[EARLY]["mos_com"] == 0.5
 
 
-def test_a_tick_late_everything_is_said_a_tick_later():
+def test_a_tick_late_everything_is_reported_a_tick_later():
     late = one_tick_late(announcement([50], {50: -1.0}))
     assert np.flatnonzero(late.level == UNSTABLE).tolist() == [51]
     assert LEVELS[late.level[0]] == "unknown" and reason_name(late.reason[0]) == "input"

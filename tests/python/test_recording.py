@@ -177,7 +177,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("old", "new", "words"), BAD, ids=[words for *_, words in BAD])
-def test_a_bad_trial_is_one_line_that_says_where(trial, capsys, old, new, words):
+def test_a_bad_trial_is_one_line_that_reports_where(trial, capsys, old, new, words):
     assert main(["replay", trial(old, new)]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
@@ -187,12 +187,12 @@ def test_a_bad_trial_is_one_line_that_says_where(trial, capsys, old, new, words)
 
 
 @pytest.mark.parametrize("text", ["", ",".join(COLUMNS), ",".join(COLUMNS) + "\n0" + ",0" * 15])
-def test_a_trial_without_samples_is_refused(trial, text):
+def test_a_trial_without_samples_is_rejected(trial, text):
     with pytest.raises(UserError, match=r"trial\.csv"):
         load_recording(trial(text=text))
 
 
-def test_a_file_that_is_not_there_or_not_text_is_refused(tmp_path):
+def test_a_file_that_is_not_there_or_not_text_is_rejected(tmp_path):
     with pytest.raises(UserError, match=r"absent\.csv"):
         load_recording(str(tmp_path / "absent.csv"))
     (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00\x01")
@@ -280,7 +280,7 @@ if TRIALS.is_dir():
     @pytest.mark.parametrize(
         "row", list(csv.DictReader((TRIALS / "manifest.csv").open())), ids=lambda row: row["file"]
     )
-    def test_recorded_trials_measure_as_their_manifest_says(row):
+    def test_recorded_trials_measure_as_their_manifest_reports(row):
         gait = analyse(load_recording(str(TRIALS / row["file"])))
         assert gait.speed_m_s == pytest.approx(float(row["speed_m_s"]), rel=0.03)
         assert gait.step_length_m == pytest.approx(float(row["step_length_m"]), rel=0.05)

@@ -269,7 +269,7 @@ def test_a_tick_with_a_lost_frame_is_no_tick(monkeypatch):
         list(play_lockstep(bus, iter(sets_of(Walk(duration_s=0.5)))))
 
 
-def test_a_walk_is_judged_as_it_was_walked():
+def test_a_walk_is_checked_as_it_was_walked():
     walk = Walk(speed_m_s=1.2, step_length_m=0.65, duration_s=6)
     ticks = list(play_lockstep(OfflineFirmware(), iter(sets_of(walk))))
     speeds = [scores["V_COMP"] for _, scores in ticks if not math.isnan(scores["V_COMP"])]
@@ -328,7 +328,7 @@ def test_a_replay_gives_the_same_bits_each_time(capsys, tmp_path):
     assert written[0] == written[1]
 
 
-def test_what_no_human_walks_is_told(capsys, tmp_path):
+def test_what_no_human_walks_is_reported(capsys, tmp_path):
     walk = Walk(speed_m_s=1200.0, step_length_m=650.0)
     path = tmp_path / "millimetres.csv"
     path.write_text(csv_text(walk.recording()))

@@ -263,7 +263,7 @@ def test_the_worst_alarms_of_a_long_run_are_shown_closely(walk, tmp_path, monkey
     assert views == [("unstable", "3.20"), ("caution", "4.80"), ("caution", "6.40")]
 
 
-def test_faults_late_ticks_and_refused_frames_are_told(walk, tmp_path):
+def test_faults_late_ticks_and_rejected_frames_are_reported(walk, tmp_path):
     def health(tick, message):
         message.faults = 1 << 3 if tick in (20, 21, 30) else 0
         message.limits = message.status = 0
@@ -293,7 +293,7 @@ def test_ages_are_the_inputs(walk, tmp_path, unseen):
     assert ["left foot", f"{median:.0f}", f"{usual:.0f}", f"{TICKS - 4}", "3"] in rows
 
 
-def test_gaps_are_told_and_a_silence_has_no_level(walk, tmp_path, unseen):
+def test_gaps_are_reported_and_a_silence_has_no_level(walk, tmp_path, unseen):
     """A few ticks are bridged; of seconds nothing is known."""
     lost = {*range(30, 33), *range(60, 100)}
     events = [e for e in events_of(walk) if round(utime_us(e) / 80000) not in lost]
@@ -314,7 +314,7 @@ def utime_us(event: Event) -> int:
     return decode(event).utime_us
 
 
-def test_without_verdicts_it_says_so(walk, tmp_path, unseen):
+def test_without_verdicts_it_reports_it(walk, tmp_path, unseen):
     log = write_events(tmp_path / "log", without(events_of(walk), "VERDICT"))
     page = report(log, tmp_path / "a.html")
     assert "No verdict was logged." in page.text and ALARMS not in page.tables
@@ -412,7 +412,7 @@ def refused(arguments: list[str], capsys) -> str:
     return printed.err
 
 
-def test_logs_of_others_and_of_two_firmwares_at_once_are_refused(walk, tmp_path, capsys):
+def test_logs_of_others_and_of_two_firmwares_at_once_are_rejected(walk, tmp_path, capsys):
     others = write_events(tmp_path / "others", [Event(1, "CAMERA", b"picture")])
     assert "1 messages, on 'CAMERA', is one" in refused([str(others)], capsys)
     health = [e for e in events_of(walk) if e.channel == "SADDLEWALK_HEALTH"]

@@ -170,7 +170,7 @@ def test_half_a_unit_of_the_last_digit(printed, half):
     assert numbers.half_digit(printed) == pytest.approx(half)
 
 
-def test_status_tells_that_a_number_is_off(monkeypatch, tmp_path, capsys):
+def test_status_reports_that_a_number_is_off(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(figures, "draw_all", lambda simulations, trials: [])
     monkeypatch.setattr(numbers, "TOE_OFF_DEG", ("9.6", "12.3", "15.5", "25.2"))
     assert main(["reproduce", "--out", str(tmp_path)]) == 1
@@ -181,7 +181,7 @@ def test_status_tells_that_a_number_is_off(monkeypatch, tmp_path, capsys):
     assert page.count("<strong>off</strong>") == 1
 
 
-def test_status_tells_that_a_finding_does_not_hold(monkeypatch, tmp_path, capsys):
+def test_status_reports_that_a_finding_does_not_hold(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(figures, "draw_all", lambda simulations, trials: [])
     monkeypatch.setattr(numbers, "VARIABILITY_SD", 1.0)
     assert main(["reproduce", "--out", str(tmp_path)]) == 1
@@ -200,7 +200,7 @@ def test_page_holds_every_figure_and_needs_nothing_else(reproduced):
     )
 
 
-def test_page_tells_every_number_and_every_reading(reproduced, simulated):
+def test_page_reports_every_number_and_every_reading(reproduced, simulated):
     page = (reproduced / "paper.html").read_text()
     rows = re.findall(r"<tr>(.*?)</tr>", page, re.DOTALL)
     cells = [re.findall(r"<td>(.*?)</td>", row, re.DOTALL) for row in rows]
@@ -227,7 +227,7 @@ def test_readings_are_the_rows_of_the_equations_page(monkeypatch, tmp_path):
         readings.readings()
 
 
-def test_without_trials_only_orendurff_is_drawn_and_it_says_so(monkeypatch, tmp_path, capsys):
+def test_without_trials_only_orendurff_is_drawn_and_it_reports_it(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(figures, "draw_all", lambda simulations, trials: [])
     assert main(["reproduce", "--out", str(tmp_path)]) == 0
     assert "only the points of Orendurff 2004" in capsys.readouterr().out
@@ -252,7 +252,7 @@ def test_people_are_measured_as_they_walked(tmp_path):
     assert first.vertical_m == pytest.approx(0.02, abs=0.0002)
 
 
-def test_a_person_who_stands_is_told_as_unknown(tmp_path):
+def test_a_person_who_stands_is_reported_as_unknown(tmp_path):
     still = Walk(speed_m_s=1e-3).recording()
     (tmp_path / "still.csv").write_text(csv_text(still))
     (trial,) = load_trials(tmp_path)
@@ -300,7 +300,7 @@ def test_table_cells_stay_cells():
 
 if TRIALS.is_dir():
 
-    def test_recorded_people_measure_as_their_manifest_says():
+    def test_recorded_people_measure_as_their_manifest_reports():
         lines = (TRIALS / "manifest.csv").read_text().splitlines()
         manifest = {row["file"]: row for row in csv.DictReader(lines)}
         trials = load_trials(TRIALS)

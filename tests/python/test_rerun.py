@@ -160,7 +160,7 @@ def test_every_field_of_the_configuration_is_logged_and_counts(walk, tmp_path, c
     assert "gravity_n" in shown and "the configuration with tick 12 is another" in shown
 
 
-def test_a_configuration_of_another_version_is_refused(walk, tmp_path, capsys):
+def test_a_configuration_of_another_version_is_rejected(walk, tmp_path, capsys):
     from saddlewalk.transport.lcm_types import config_t
 
     events = events_of(walk)
@@ -173,7 +173,7 @@ def test_a_configuration_of_another_version_is_refused(walk, tmp_path, capsys):
     assert "saddlewalk 9.9.9, and stride_magic is not a field" in shown
 
 
-def test_a_log_from_mid_run_says_so(walk, tmp_path, capsys):
+def test_a_log_from_mid_run_reports_it(walk, tmp_path, capsys):
     events = events_of(walk)
     status, _, shown = rerun(write_events(tmp_path / "log", events[500:]), capsys)
     assert (status, shown.count("\n")) == (2, 1)
@@ -202,7 +202,7 @@ def test_a_lost_input_ends_the_comparison_there(walk, tmp_path, capsys):
     assert f"tick 59 is followed by tick 61: ticks 61 to {TICKS - 1} cannot be computed" in shown
 
 
-def test_lost_outputs_are_told_and_the_others_compared(walk, tmp_path, capsys):
+def test_lost_outputs_are_reported_and_the_others_compared(walk, tmp_path, capsys):
     events = [e for e in events_of(walk) if e.channel != "SADDLEWALK_BOS"]
     status, shown, _ = rerun(write_events(tmp_path / "log", events), capsys)
     assert status == 1 and f"{TICKS} ticks recomputed" in shown
@@ -223,13 +223,13 @@ def test_a_log_of_before_a_channel_is_whole(walk, tmp_path, capsys):
     assert "SADDLEWALK_BALANCE of 1 ticks is not in the log, the first time of tick 3" in shown
 
 
-def test_a_log_without_inputs_says_so(walk, tmp_path, capsys):
+def test_a_log_without_inputs_reports_it(walk, tmp_path, capsys):
     events = [e for e in events_of(walk) if e.channel != "SADDLEWALK_INPUT"]
     status, _, shown = rerun(write_events(tmp_path / "log", events), capsys)
     assert (status, shown.count("\n")) == (2, 1) and "nothing came on SADDLEWALK_INPUT" in shown
 
 
-def test_a_log_that_was_cut_says_so(walk, tmp_path, capsys):
+def test_a_log_that_was_cut_reports_it(walk, tmp_path, capsys):
     cut = tmp_path / "cut.lcmlog"
     cut.write_bytes((walk / "walk.lcmlog").read_bytes()[:-150])
     status, shown, _ = rerun(cut, capsys)
@@ -299,7 +299,7 @@ def test_a_can_log_with_another_body_differs(walk, capsys):
     assert status == 1 and "SCORES_FORCE GRAVITY" in shown
 
 
-def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
+def test_a_can_log_from_mid_run_or_with_losses_reports_it(walk, tmp_path, capsys):
     frames = frames_of(walk)
     log = can_log(tmp_path / "mid.log", frames[29 * 5 :])
     status, _, shown = rerun(log, capsys)
@@ -317,7 +317,7 @@ def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
     )
 
 
-def test_frames_that_the_host_refused_are_refused_again(walk, tmp_path, capsys):
+def test_frames_that_the_host_rejected_are_rejected_again(walk, tmp_path, capsys):
     """Bad CRC, a repeat, foreign identifiers, other kinds of frame."""
     frames = frames_of(walk)
     com = next(frame for frame in frames if frame.arbitration_id == 0x110)
@@ -347,7 +347,7 @@ def test_a_command_that_cannot_be_used_is_not_used_again(walk, tmp_path, capsys)
     assert status == 0, shown
 
 
-def test_a_broken_can_log_says_where(walk, tmp_path, capsys):
+def test_a_broken_can_log_reports_where(walk, tmp_path, capsys):
     lines = (walk / "walk.candump.log").read_text().splitlines()
     broken = tmp_path / "broken.log"
     broken.write_text("\n".join([*lines[:1000], "(17953285 saddlewalk"]))

@@ -172,7 +172,7 @@ def test_the_foot_stands_where_it_is_from_heel_strike_to_toe_off(schedule, capsy
             assert np.ptp(stance) < 1e-5
 
 
-def test_a_speed_that_is_not_feasible_is_limited_and_said(schedule, capsys):
+def test_a_speed_that_is_not_feasible_is_limited_and_reported(schedule, capsys):
     path = schedule("0,0\n1,2.5\n6,1\n")
     assert run("--schedule", path, "--duration", "9") == 0
     printed = capsys.readouterr().err

@@ -71,7 +71,7 @@ class Candump:
         return [text for text in heard if text != as_text(self.LISTENING)]
 
 
-def test_candump_sees_what_the_firmware_hears_and_says():
+def test_candump_sees_what_the_firmware_hears_and_reports():
     with Candump() as candump, lockstep(spec=CLASSIC) as host:
         sent = [host.send("COMMAND", **WALK)]
         sent += [host.send(name, **values) for name, values in STANDING.items()]

@@ -75,7 +75,7 @@ def test_a_recording_may_come_from_standard_input(recorded, monkeypatch, capsys)
         assert supervised(capsys, "-") == from_file
 
 
-def test_what_was_assumed_and_what_is_strange_is_told(recorded, tmp_path, capsys):
+def test_what_was_assumed_and_what_is_strange_is_reported(recorded, tmp_path, capsys):
     data = Path(recorded["c3d"]).read_bytes()
     Path(recorded["c3d"]).write_bytes(data.replace(b"UNITS", b"UNITX", 1))
     assert main(["supervise", "--in", recorded["c3d"]]) == 0
@@ -169,7 +169,7 @@ def test_what_a_demo_writes_is_scored(walk, capsys):
         ("t_s,mode,true_com_x_m,true_com_y_m,true_com_z_m", "no column true_com_vx_m_s"),
     ],
 )
-def test_a_table_of_no_layout_is_refused_by_the_one_it_is_nearest_to(
+def test_a_table_of_no_layout_is_rejected_by_the_one_it_is_nearest_to(
     header, named, tmp_path, capsys
 ):
     path = tmp_path / "table.csv"

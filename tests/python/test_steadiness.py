@@ -108,7 +108,7 @@ NOT_STEADY = {
 
 
 @pytest.mark.parametrize(("movement", "words"), NOT_STEADY.values(), ids=NOT_STEADY)
-def test_another_movement_is_refused_with_number_and_limit(movement, words):
+def test_another_movement_is_rejected_with_number_and_limit(movement, words):
     with pytest.raises(UserError, match=f"not one steady straight walk: .*{words}") as refused:
         measure(movement())
     assert "at most" in str(refused.value)
@@ -142,7 +142,7 @@ def test_a_steady_walk_that_is_not_perfect_is_measured(movement):
     assert measure(movement()).speed_m_s > 0.5
 
 
-def test_left_and_right_exchanged_are_said_to_be(tmp_path, capsys):
+def test_left_and_right_exchanged_are_reported_to_be(tmp_path, capsys):
     walk = walk_of(PERSON, 1.0)
     swapped = dataclasses.replace(walk, heel_m=walk.heel_m[::-1], toe_m=walk.toe_m[::-1])
     path = tmp_path / "walk.csv"
@@ -153,7 +153,7 @@ def test_left_and_right_exchanged_are_said_to_be(tmp_path, capsys):
     assert "walk.csv: step width -0.138 m: left and right seem swapped" in shown
 
 
-def test_a_swap_in_a_laboratory_s_file_is_said_too(tmp_path):
+def test_a_swap_in_a_laboratory_s_file_is_reported_too(tmp_path):
     markers = laboratory(walk_of(PERSON, 1.0), LABORATORIES["z up, walking along -y"])
     exchanged = {f"Ann:{'RL'['LR'.index(name[4])]}{name[5:]}": xyz for name, xyz in markers.items()}
     with pytest.raises(UserError, match="left and right seem swapped"):

@@ -256,7 +256,7 @@ def test_bad_input_from_the_start_writes_no_header(capsys, tmp_path):
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe\x00\x00", b"\x00" * 64])
-def test_binary_file_is_refused_in_one_line(content, capsys, tmp_path):
+def test_binary_file_is_rejected_in_one_line(content, capsys, tmp_path):
     source = tmp_path / "states.csv"
     source.write_bytes(content)
     assert main(["supervise", "--in", str(source)]) == 2
@@ -268,7 +268,7 @@ def test_missing_file_is_named(capsys, tmp_path):
     assert "none.csv" in capsys.readouterr().err
 
 
-def test_speed_beyond_the_ceiling_is_told(capsys, tmp_path):
+def test_speed_beyond_the_ceiling_is_reported(capsys, tmp_path):
     source = tmp_path / "states.csv"
     source.write_text(",".join(STATE_COLUMNS) + "\n0" + "," * (len(STATE_COLUMNS) - 1) + "\n")
     assert main(["supervise", "--in", str(source), "--speed", "9"]) == 0

@@ -201,7 +201,7 @@ def assert_equal_the_model(rows: list[Row], twin: Twin, deviation: Deviation) ->
 
 
 @pytest.mark.parametrize("speed", SPEEDS)
-def test_planned_walk_is_as_the_model_says(speed, capsys, tmp_path):
+def test_planned_walk_is_as_the_model_reports(speed, capsys, tmp_path):
     states = planned_states(capsys, speed, 4)
     rows = supervise(capsys, tmp_path, states, "--speed", str(speed))
     assert len(rows) == len(states)
@@ -217,7 +217,7 @@ DEVIATIONS = {
 
 @pytest.mark.parametrize("speed", SPEEDS)
 @pytest.mark.parametrize("name", DEVIATIONS)
-def test_deviation_from_the_plan_grows_as_the_model_says(speed, name, capsys, tmp_path):
+def test_deviation_from_the_plan_grows_as_the_model_reports(speed, name, capsys, tmp_path):
     states = planned_states(capsys, speed, 3)
     deviate(states, DEVIATIONS[name])
     rows = supervise(capsys, tmp_path, states, "--speed", str(speed))
@@ -225,7 +225,7 @@ def test_deviation_from_the_plan_grows_as_the_model_says(speed, name, capsys, tm
 
 
 @pytest.mark.parametrize("speed", SPEEDS)
-def test_walk_of_one_s_own_is_as_the_model_says(speed, capsys, tmp_path):
+def test_walk_of_one_s_own_is_as_the_model_reports(speed, capsys, tmp_path):
     """Without a plan, from the last step: as exact as a heel strike is seen, here within 2 ms."""
     states = planned_states(capsys, speed, 2, 0.002)
     rows = supervise(capsys, tmp_path, states)

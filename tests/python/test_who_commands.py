@@ -57,7 +57,7 @@ def test_another_machine_cannot_command_by_lcm():
 
 
 @in_private_network
-def test_another_machine_commands_by_lcm_where_an_option_says_so():
+def test_another_machine_commands_by_lcm_where_an_option_reports_it():
     with neighbour() as other, Host("--lcm", URL, "--lcm-from-network", COMMAND_HOLDS) as host:
         assert "this machine (CAN over UDP), anyone on the network (LCM)" in host.first_line
         node = LcmNode(URL)

@@ -417,7 +417,7 @@ def test_counter_rule_on_both_sides(codec):
         assert python.bad_counter > 0
 
 
-def test_any_bytes_are_judged_alike(codec):
+def test_any_bytes_are_checked_alike(codec):
     """Random identifiers, lengths and bytes, some with the right CRC."""
     rng = random.Random(SEED + 4)
     c, python = ffi.new("saddle_wire_receiver_t *"), wire.Receiver()

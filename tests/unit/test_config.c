@@ -109,7 +109,7 @@ static void test_ends_of_every_range_belong_to_it(void)
         const float ends[] = {field->min, field->max};
         for (size_t k = 0; k < COUNT_OF(ends); k++) {
             saddle_config_t probe = {0};
-            /* Fields are judged in order: with all before it good and all after it zero, this one
+            /* Fields are checked in order: with all before it good and all after it zero, this one
              * is accepted if and only if a later field is named. */
             memcpy(&probe, &config, field->offset);
             *config_field(&probe, i) = ends[k];

@@ -1,4 +1,4 @@
-/** Who is obeyed, and how old what was given is. */
+/** Which source commands, and the age of each input. */
 #include <inbox.h>
 
 #include <unity.h>
@@ -16,9 +16,9 @@ void setUp(void)
 
 void tearDown(void) {}
 
-static void expect_counts(uint32_t obeyed, uint32_t unusable, uint32_t ignored)
+static void expect_counts(uint32_t applied, uint32_t unusable, uint32_t ignored)
 {
-    TEST_ASSERT_EQUAL_UINT32(obeyed, inbox.commands_obeyed);
+    TEST_ASSERT_EQUAL_UINT32(applied, inbox.commands_applied);
     TEST_ASSERT_EQUAL_UINT32(unusable, inbox.commands_unusable);
     TEST_ASSERT_EQUAL_UINT32(ignored, inbox.commands_ignored);
     TEST_ASSERT_EQUAL_UINT32(unusable + ignored, saddle_inbox_rejected(&inbox));

@@ -485,7 +485,7 @@ static void test_stop_while_starting(void)
         command.mode = SADDLE_COMMAND_STAND;
         TEST_ASSERT_TRUE(time_to_stand(80000) < 8.0);
         assert_stands_side_by_side();
-        /* The command is obeyed 80 ms later: before the shift's end no step was begun. */
+        /* The command is applied 80 ms later: before the shift's end no step was begun. */
         TEST_ASSERT_EQUAL(until < 720000u, plan.step_count == 0u);
     }
 }
@@ -723,14 +723,14 @@ static void test_events_are_foretold_between_ticks(void)
         command.speed_m_s = i % 3 == 0 ? 0.0f : i % 3 == 1 ? 0.7f : 1.5f;
         tick(0);
         const saddle_plan_t said = plan;
-        saddle_planner_t foretold = planner; /* time alone passes: no new command */
+        saddle_planner_t predicted = planner; /* time alone passes: no new command */
         uint32_t via_us = 0;
         uint32_t land_us = 0;
         for (uint32_t t = 0; t < 3000000u && land_us == 0u; t += 10u) {
-            saddle_planner_advance(&foretold, model_of(&config), 10u);
-            via_us = via_us == 0u && foretold.cycle.phase != said.phase ? t + 10u : via_us;
-            land_us = foretold.cycle.step_count != said.step_count ? t + 10u : 0u;
-            if (foretold.shifting) {
+            saddle_planner_advance(&predicted, model_of(&config), 10u);
+            via_us = via_us == 0u && predicted.cycle.phase != said.phase ? t + 10u : via_us;
+            land_us = predicted.cycle.step_count != said.step_count ? t + 10u : 0u;
+            if (predicted.shifting) {
                 break;
             }
         }

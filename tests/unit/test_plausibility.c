@@ -38,7 +38,7 @@ void setUp(void)
 
 void tearDown(void) {}
 
-static uint32_t judge(void)
+static uint32_t check_measurement(void)
 {
     return saddle_measurement_check(&plausibility, model_of(&config), &measured, planned_m_s, DT_S);
 }
@@ -47,7 +47,7 @@ static uint32_t judge(void)
 static uint32_t judge_anew(void)
 {
     memset(&plausibility, 0, sizeof plausibility);
-    return judge();
+    return check_measurement();
 }
 
 /* The body moves on over feet that stand: the feet fall behind the CoM. */
@@ -63,7 +63,7 @@ static void move(float vx_m_s, float vy_m_s)
 
 static void test_good_measurement_has_no_fault(void)
 {
-    TEST_ASSERT_EQUAL_HEX32(0, judge());
+    TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
 }
 
 static void test_age_at_the_limit_is_fresh_and_above_it_stale(void)
@@ -164,7 +164,7 @@ static void test_stale_measurement_is_not_also_out_of_range(void)
 {
     measured.com.height_m = NAN;
     measured.com.age_us = SADDLE_AGE_NEVER_US;
-    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_COM_STALE, judge());
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_COM_STALE, check_measurement());
 }
 
 static void test_faults_add_up(void)
@@ -172,19 +172,20 @@ static void test_faults_add_up(void)
     measured.com.age_us = SADDLE_AGE_NEVER_US;
     measured.foot[SADDLE_LEFT].age_us = SADDLE_AGE_NEVER_US;
     measured.foot[SADDLE_RIGHT].cop_m.x = NAN;
-    TEST_ASSERT_EQUAL_HEX32(
-        SADDLE_FAULT_COM_STALE | SADDLE_FAULT_LEFT_STALE | SADDLE_FAULT_RIGHT_RANGE, judge());
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_COM_STALE | SADDLE_FAULT_LEFT_STALE |
+                                SADDLE_FAULT_RIGHT_RANGE,
+                            check_measurement());
 }
 
 static void test_recovery_is_at_once(void)
 {
-    judge();
+    check_measurement();
     measured.com.velocity_m_s.x = NAN;
     measured.foot[SADDLE_LEFT].cop_m.y = INFINITY;
     measured.foot[SADDLE_RIGHT].age_us = SADDLE_AGE_NEVER_US;
-    TEST_ASSERT_NOT_EQUAL_UINT32(0, judge());
+    TEST_ASSERT_NOT_EQUAL_UINT32(0, check_measurement());
     measured = good_measurement();
-    TEST_ASSERT_EQUAL_HEX32(0, judge());
+    TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
 }
 
 /* ---- frozen -------------------------------------------------------------------------------- */
@@ -193,11 +194,11 @@ static void test_recovery_is_at_once(void)
  * amiss make more than 2 cm in one tick, but the bits may stay for com_max_age_s. */
 static void test_velocity_that_stays_while_the_feet_say_another_is_frozen(void)
 {
-    TEST_ASSERT_EQUAL_HEX32(0, judge());
+    TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     for (int tick = 1; tick <= 8; tick++) {
         move(0.5f, 0.0f);
         const uint32_t expected = tick > 3 ? (uint32_t)SADDLE_FAULT_COM_FROZEN : 0u;
-        TEST_ASSERT_EQUAL_HEX32_MESSAGE(expected, judge(), "240 ms are three ticks");
+        TEST_ASSERT_EQUAL_HEX32_MESSAGE(expected, check_measurement(), "240 ms are three ticks");
     }
 }
 
@@ -212,48 +213,49 @@ static void test_frozen_com_is_seen_along_either_axis_from_two_centimetres_on(vo
                          {1.1f, 0.05f + 0.055f}};
     for (size_t i = 0; i < COUNT_OF(true_velocity); i++) {
         setUp();
-        judge();
+        check_measurement();
         for (int tick = 1; tick <= 8; tick++) {
             move(true_velocity[i].vx, true_velocity[i].vy);
-            TEST_ASSERT_EQUAL_HEX32(tick >= 5 ? (uint32_t)SADDLE_FAULT_COM_FROZEN : 0u, judge());
+            TEST_ASSERT_EQUAL_HEX32(tick >= 5 ? (uint32_t)SADDLE_FAULT_COM_FROZEN : 0u,
+                                    check_measurement());
         }
     }
 }
 
 static void test_frozen_com_is_believed_again_as_soon_as_it_changes(void)
 {
-    judge();
+    check_measurement();
     for (int tick = 0; tick < 10; tick++) {
         move(0.5f, 0.0f);
-        judge();
+        check_measurement();
     }
-    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_COM_FROZEN, judge());
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_COM_FROZEN, check_measurement());
     move(0.5f, 0.0f);
     measured.com.velocity_m_s.x = 0.5f;
-    TEST_ASSERT_EQUAL_HEX32(0, judge());
+    TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     for (int tick = 0; tick < 10; tick++) { /* and now it is right */
         move(0.5f, 0.05f);
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     }
 }
 
 static void test_com_whose_height_changes_is_alive(void)
 {
-    judge();
+    check_measurement();
     for (int tick = 0; tick < 10; tick++) {
         move(0.5f, 0.0f);
         measured.com.height_m += 1e-3f;
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     }
 }
 
 /* A walk at a constant speed without noise: the bits stay, and the feet agree. */
 static void test_constant_speed_that_the_feet_agree_with_is_not_frozen(void)
 {
-    judge();
+    check_measurement();
     for (int tick = 0; tick < 20; tick++) {
         move(1.1f, 0.05f);
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     }
 }
 
@@ -261,7 +263,7 @@ static void test_standing_still_without_noise_is_not_frozen(void)
 {
     measured.com.velocity_m_s = (saddle_vec2_t){0.0f, 0.0f};
     for (int tick = 0; tick < 200; tick++) {
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     }
 }
 
@@ -277,22 +279,22 @@ static void test_com_that_stands_still_under_a_planned_walk_is_frozen(void)
         planned_m_s = speeds_m_s[i];
         for (int tick = 0; tick < 12; tick++) { /* 0.24 s after the first, and 2 cm */
             const bool frozen = tick >= 3 && (float)tick * DT_S * planned_m_s > 0.02f;
-            TEST_ASSERT_EQUAL_HEX32(frozen ? SADDLE_FAULT_COM_FROZEN : 0u, judge());
+            TEST_ASSERT_EQUAL_HEX32(frozen ? SADDLE_FAULT_COM_FROZEN : 0u, check_measurement());
         }
         measured.com.velocity_m_s.x = 0.01f;
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     }
 }
 
 static void test_feet_in_the_air_do_not_make_the_com_frozen(void)
 {
     measured.foot[SADDLE_RIGHT].contact = false;
-    judge();
+    check_measurement();
     for (int tick = 0; tick < 6; tick++) {
         measured.foot[SADDLE_LEFT].cop_m.x -= 1.1f * DT_S;
         measured.foot[SADDLE_LEFT].cop_m.y -= 0.05f * DT_S;
         measured.foot[SADDLE_RIGHT].cop_m.x += 1.5f * DT_S;
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     }
 }
 
@@ -323,7 +325,7 @@ static void test_walk_at_a_constant_speed_is_not_frozen(void)
     measured.com.velocity_m_s = (saddle_vec2_t){0.8f, 0.0f};
     for (int tick = 0; tick < 125; tick++) {
         walk_on(&walker, 0.8f);
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     }
 }
 
@@ -339,7 +341,7 @@ static void test_com_that_freezes_in_a_walk_stays_frozen_until_it_changes(void)
         for (int tick = 0; tick < start + 60; tick++) {
             walk_on(&walker, 0.8f);
             measured.com.velocity_m_s.x = tick < start ? 0.8f + 1e-3f * (float)(tick % 3) : 1.2f;
-            const uint32_t faults = judge();
+            const uint32_t faults = check_measurement();
             if (faults != 0u && first == 0) {
                 first = tick;
             }
@@ -349,7 +351,7 @@ static void test_com_that_freezes_in_a_walk_stays_frozen_until_it_changes(void)
         TEST_ASSERT_TRUE(first > start + 3 && first <= start + 9);
         walk_on(&walker, 0.8f);
         measured.com.velocity_m_s.x = 0.8f;
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     }
 }
 
@@ -359,18 +361,18 @@ static void test_foot_that_keeps_its_bits_while_the_com_moves_is_frozen(void)
     const uint32_t faults[] = {SADDLE_FAULT_LEFT_FROZEN, SADDLE_FAULT_RIGHT_FROZEN};
     for (int side = 0; side < 2; side++) {
         setUp();
-        judge();
+        check_measurement();
         for (int tick = 1; tick <= 8; tick++) {
             const saddle_vec2_t frozen_m = measured.foot[side].cop_m;
             measured.com.velocity_m_s.x = 1.1f + 0.01f * (float)(tick % 2);
             move(1.1f, 0.05f);
             measured.foot[side].cop_m = frozen_m;
             const uint32_t expected = tick > 2 ? faults[side] : 0u;
-            TEST_ASSERT_EQUAL_HEX32_MESSAGE(expected, judge(), "160 ms are two ticks");
+            TEST_ASSERT_EQUAL_HEX32_MESSAGE(expected, check_measurement(), "160 ms are two ticks");
         }
         measured.foot[side].cop_m.x -= 0.5f;
         measured.com.velocity_m_s.x = 1.0f;
-        TEST_ASSERT_EQUAL_HEX32(0, judge()); /* alive again at once */
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement()); /* alive again at once */
     }
 }
 
@@ -378,29 +380,29 @@ static void test_foot_that_keeps_its_bits_while_the_com_moves_is_frozen(void)
 static void test_foot_is_alive_if_one_number_changes_or_the_com_hardly_moves(void)
 {
     measured.com.velocity_m_s = (saddle_vec2_t){0.04f, -0.04f};
-    judge();
+    check_measurement();
     for (int tick = 1; tick <= 6; tick++) { /* 3.2 mm each: 19.2 mm */
         measured.com.velocity_m_s.x += 1e-4f * (float)(tick % 2 == 0 ? 1 : -1);
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     }
     measured.com.velocity_m_s.x = 1.1f;
     for (int tick = 0; tick < 10; tick++) {
         measured.com.velocity_m_s.x += 0.01f;
         measured.foot[SADDLE_LEFT].cop_m.y += 1e-6f;
         measured.foot[SADDLE_RIGHT].cop_m.x += 1e-6f;
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     }
 }
 
 /* The same packet again and again, with an age of 0: nothing moves but what the velocity says. */
 static void test_stream_that_repeats_itself_is_frozen_in_every_number(void)
 {
-    judge();
+    check_measurement();
     for (int tick = 1; tick <= 6; tick++) {
         const uint32_t feet = SADDLE_FAULT_LEFT_FROZEN | SADDLE_FAULT_RIGHT_FROZEN;
         const uint32_t expected =
             (tick > 2 ? feet : 0u) | (tick > 3 ? (uint32_t)SADDLE_FAULT_COM_FROZEN : 0u);
-        TEST_ASSERT_EQUAL_HEX32(expected, judge());
+        TEST_ASSERT_EQUAL_HEX32(expected, check_measurement());
     }
 }
 
@@ -419,7 +421,7 @@ static void test_foot_under_a_resting_com_is_not_frozen(void)
                                                         axis == 1 ? table[i].speed : 0.0f};
             for (int tick = 0; tick < 100; tick++) {
                 measured.com.height_m = tick % 2 == 0 ? 1.0f : 1.001f;
-                faults = judge();
+                faults = check_measurement();
             }
             const uint32_t feet = SADDLE_FAULT_LEFT_FROZEN | SADDLE_FAULT_RIGHT_FROZEN;
             TEST_ASSERT_EQUAL_HEX32(table[i].frozen ? feet : 0u, faults);
@@ -430,23 +432,23 @@ static void test_foot_under_a_resting_com_is_not_frozen(void)
 /* The velocity is frozen, and a foot's place: after an outage both have to be seen anew. */
 static void test_outage_ends_what_was_frozen_until_it_is_seen_again(void)
 {
-    judge();
+    check_measurement();
     for (int tick = 0; tick < 8; tick++) {
         move(0.5f, 0.0f);
         measured.foot[SADDLE_LEFT].cop_m = good_measurement().foot[SADDLE_LEFT].cop_m;
-        judge();
+        check_measurement();
     }
     const uint32_t frozen = SADDLE_FAULT_COM_FROZEN | SADDLE_FAULT_LEFT_FROZEN;
-    TEST_ASSERT_EQUAL_HEX32(frozen, judge() & frozen);
+    TEST_ASSERT_EQUAL_HEX32(frozen, check_measurement() & frozen);
     measured.foot[SADDLE_RIGHT].age_us = SADDLE_AGE_NEVER_US;
-    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_RIGHT_STALE, judge());
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_RIGHT_STALE, check_measurement());
     measured.foot[SADDLE_RIGHT].age_us = 0;
     for (int tick = 1; tick <= 6; tick++) {
         move(0.5f, 0.0f);
         measured.foot[SADDLE_LEFT].cop_m = good_measurement().foot[SADDLE_LEFT].cop_m;
         const uint32_t expected = (tick > 2 ? (uint32_t)SADDLE_FAULT_LEFT_FROZEN : 0u) |
                                   (tick > 3 ? (uint32_t)SADDLE_FAULT_COM_FROZEN : 0u);
-        TEST_ASSERT_EQUAL_HEX32(expected, judge());
+        TEST_ASSERT_EQUAL_HEX32(expected, check_measurement());
     }
 }
 
@@ -461,7 +463,8 @@ static void test_outage_does_not_make_anything_frozen(void)
             const bool out = tick >= 10 && tick < 10 + length;
             walk_on(&walker, 0.8f);
             measured.foot[SADDLE_LEFT].age_us = out ? SADDLE_AGE_NEVER_US : 0u;
-            TEST_ASSERT_EQUAL_HEX32(out ? (uint32_t)SADDLE_FAULT_LEFT_STALE : 0u, judge());
+            TEST_ASSERT_EQUAL_HEX32(out ? (uint32_t)SADDLE_FAULT_LEFT_STALE : 0u,
+                                    check_measurement());
         }
     }
 }
@@ -471,11 +474,11 @@ static void test_push_of_a_standing_person_is_not_frozen(void)
 {
     measured.com.velocity_m_s = (saddle_vec2_t){0.0f, 0.0f};
     for (int tick = 0; tick < 10; tick++) {
-        judge();
+        check_measurement();
     }
     measured.com.velocity_m_s.x = 1.0f;
     for (int tick = 0; tick < 10; tick++) {
-        TEST_ASSERT_EQUAL_HEX32(0, judge());
+        TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
         move(1.0f, 0.0f);
     }
 }
@@ -490,19 +493,20 @@ static void test_both_feet_in_the_air_for_long_is_airborne(void)
     for (int tick = 1; tick <= 20; tick++) { /* 6 ticks are 0.48 s, 7 are 0.56 s */
         move(0.5f, 0.05f);
         const uint32_t expected = tick > 6 ? (uint32_t)SADDLE_FAULT_AIRBORNE : 0u;
-        TEST_ASSERT_EQUAL_HEX32(expected, judge());
+        TEST_ASSERT_EQUAL_HEX32(expected, check_measurement());
     }
     TEST_ASSERT_TRUE(((uint32_t)SADDLE_FAULT_AIRBORNE & SADDLE_FAULTS_FEET) != 0u);
     measured.foot[SADDLE_RIGHT].contact = true;
     move(0.5f, 0.05f);
-    TEST_ASSERT_EQUAL_HEX32(0, judge()); /* one foot is enough, at once */
+    TEST_ASSERT_EQUAL_HEX32(0, check_measurement()); /* one foot is enough, at once */
     measured.foot[SADDLE_RIGHT].contact = false;
     for (int tick = 1; tick <= 7; tick++) { /* and the time begins anew */
         move(0.5f, 0.05f);
-        TEST_ASSERT_EQUAL_HEX32(tick > 6 ? (uint32_t)SADDLE_FAULT_AIRBORNE : 0u, judge());
+        TEST_ASSERT_EQUAL_HEX32(tick > 6 ? (uint32_t)SADDLE_FAULT_AIRBORNE : 0u,
+                                check_measurement());
     }
     measured.foot[SADDLE_LEFT].cop_m.y = measured.foot[SADDLE_RIGHT].cop_m.y - 0.16f;
-    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_AIRBORNE | SADDLE_FAULT_FEET_CROSSED, judge());
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_AIRBORNE | SADDLE_FAULT_FEET_CROSSED, check_measurement());
 }
 
 static void test_feet_that_cross_by_too_much_are_contradictory(void)
@@ -530,7 +534,7 @@ static void test_feet_that_are_not_measured_are_neither_airborne_nor_crossed(voi
     measured.foot[SADDLE_LEFT].cop_m.y = -1.0f;
     measured.foot[SADDLE_RIGHT].age_us = SADDLE_AGE_NEVER_US;
     for (int tick = 0; tick < 20; tick++) {
-        TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_RIGHT_STALE, judge());
+        TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_RIGHT_STALE, check_measurement());
     }
 }
 

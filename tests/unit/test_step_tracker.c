@@ -348,7 +348,7 @@ static void test_standing_is_seen_anew_after_a_gap(void)
     TEST_ASSERT_FALSE(tracker.stands);
 }
 
-/* Each heel strike begins the time anew, also one that tells no speed. */
+/* Each heel strike begins the time anew, also one without a known speed. */
 static void test_walk_that_goes_on_is_not_forgotten(void)
 {
     config.step_time_max_s = 1.0f;

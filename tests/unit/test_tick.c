@@ -584,7 +584,7 @@ static void assert_sound(const saddle_output_t *o)
     }
 }
 
-/* The plan between two ticks, wherever it is foretold. */
+/* The plan between two ticks, wherever it is predicted. */
 static void query(uint32_t *state, uint64_t last_us)
 {
     saddle_output_t at = {.status = SADDLE_OK};
@@ -679,16 +679,16 @@ static void test_plan_at_is_the_next_tick_s_plan_to_the_bit(void)
         tick_at(t);
         const saddle_context_t before = context;
         t += random_bits(&state) % 200001u;
-        const saddle_plan_t foretold = plan_at(t);
+        const saddle_plan_t predicted = plan_at(t);
         TEST_ASSERT_EQUAL_MEMORY(&before, &context, sizeof context);
         TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(t));
-        ASSERT_SAME_FLOAT(foretold.com_m.x, output.plan.com_m.x);
-        ASSERT_SAME_FLOAT(foretold.com_m.y, output.plan.com_m.y);
-        ASSERT_SAME_FLOAT(foretold.com_m.z, output.plan.com_m.z);
+        ASSERT_SAME_FLOAT(predicted.com_m.x, output.plan.com_m.x);
+        ASSERT_SAME_FLOAT(predicted.com_m.y, output.plan.com_m.y);
+        ASSERT_SAME_FLOAT(predicted.com_m.z, output.plan.com_m.z);
         for (int side = 0; side < 2; side++) {
-            ASSERT_SAME_FLOAT(foretold.foot_m[side].x, output.plan.foot_m[side].x);
-            ASSERT_SAME_FLOAT(foretold.foot_m[side].y, output.plan.foot_m[side].y);
-            ASSERT_SAME_FLOAT(foretold.foot_m[side].z, output.plan.foot_m[side].z);
+            ASSERT_SAME_FLOAT(predicted.foot_m[side].x, output.plan.foot_m[side].x);
+            ASSERT_SAME_FLOAT(predicted.foot_m[side].y, output.plan.foot_m[side].y);
+            ASSERT_SAME_FLOAT(predicted.foot_m[side].z, output.plan.foot_m[side].z);
         }
     }
 }
@@ -699,9 +699,9 @@ static void test_plan_at_of_a_steady_walk_is_the_next_tick_s_in_every_field(void
     join();
     tick_at(0);
     for (uint64_t t = 80000; t < 8000000u; t += 80000u) {
-        const saddle_plan_t foretold = plan_at(t);
+        const saddle_plan_t predicted = plan_at(t);
         tick_at(t);
-        TEST_ASSERT_TRUE(same_plan(&foretold, &output.plan));
+        TEST_ASSERT_TRUE(same_plan(&predicted, &output.plan));
     }
 }
 

@@ -875,7 +875,7 @@ static void test_unknown_is_announced_at_once_and_settles_again(void)
     }
 }
 
-/* Another reason for the same level is no news of level, and is told at once. */
+/* Another reason for the same level is not a new level, and is reported at once. */
 static void test_reason_of_an_announced_level_is_the_present_one(void)
 {
     config.level_hold_ticks = 3.0f;

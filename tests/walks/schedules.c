@@ -574,7 +574,7 @@ static void check_limits(walk_t *walk, const saddle_output_t *output)
     const bool limited =
         moves && (command->speed_m_s < SADDLE_SPEED_FLOOR_M_S || command->speed_m_s >= ceiling_m_s);
     expect(walk, limited == ((output->limits & (uint32_t)SADDLE_LIMIT_SPEED) != 0u),
-           "a limited speed is not told, or told of another", (double)command->speed_m_s,
+           "a limited speed is not reported, or another one is", (double)command->speed_m_s,
            (double)ceiling_m_s);
     expect(walk, output->faults == 0u || !moves || (output->faults & SADDLE_FAULT_COMMAND) == 0u,
            "a fault of the command", (double)output->faults, 0.0);
