@@ -81,7 +81,7 @@ def _parse(path: Path, limits: _Limits) -> Capture:
 
 
 def _limit_this_process(limits: _Limits) -> None:
-    """What is mapped now, and the bound on top of it: the interpreter maps more than it uses."""
+    """The memory mapped now plus the bound: the interpreter maps more than it uses."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     used_s = resource.getrusage(resource.RUSAGE_SELF).ru_utime
     for kind, most in (

@@ -19,13 +19,13 @@ SCALE_SIGN_BYTE = {84: 15, 85: 13, 86: 12}  # of the header: its top bit: data a
 ELEMENT_BYTES = {-1: 1, 1: 1, 2: 2, 4: 4}  # by type: characters, bytes, integers, floats
 MOST_DIMENSIONS = 7
 MOST_EMPTY = 0xFFFF  # elements of no length, such as 40 empty descriptions
-OVERFLOWN = 0xFFFF  # a last frame or a count of frames: the true one is elsewhere
+OVERFLOWED = 0xFFFF  # a last frame or a count of frames: the true one is in another parameter
 
 Counts = Mapping[tuple[str, str], tuple[int, ...]]  # integers by (group, parameter)
 
 
 class _LayoutError(Exception):
-    """What is wrong, without the file's name."""
+    """The error, without the file's name."""
 
 
 def check_layout(path: Path) -> None:
@@ -130,10 +130,10 @@ def _check_frames(data: bytes, processor: int, counts: Counts) -> None:
 
 
 def _frames(first: int, last: int, counts: Counts) -> int:
-    """The least of what header, POINT:FRAMES and TRIAL say; a 16-bit count may have overflown."""
-    stated = [] if last == OVERFLOWN else [last - first + 1]
+    """The smallest of header, POINT:FRAMES and TRIAL; a 16-bit count may have overflowed."""
+    stated = [] if last == OVERFLOWED else [last - first + 1]
     frames = counts.get(("POINT", "FRAMES"))
-    if frames and frames[0] not in (0, OVERFLOWN):
+    if frames and frames[0] not in (0, OVERFLOWED):
         stated.append(frames[0])
     ends = [counts.get(("TRIAL", f"ACTUAL_{edge}_FIELD"), ()) for edge in ("START", "END")]
     if all(len(words) == 2 for words in ends):

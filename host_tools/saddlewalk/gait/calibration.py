@@ -18,13 +18,13 @@ SPEED_SPREAD_M_S = 0.2  # speeds that differ by less are one speed
 FEWEST_STEPS = 2
 FEWEST_STEPS_OF_A_FOOT = 3
 ONE_SPEED = "one speed: the offset, with the paper's slope"
-NARROWEST_M = 0.02  # what the core takes narrower steps for
+NARROWEST_M = 0.02  # the core treats narrower steps as this wide
 PENDULUM_RATIO = (0.45, 0.65)  # of a human's CoM height to the body height
 
 
 @dataclass(frozen=True)
 class Fit:
-    """One quantity: the fields that it gives, or why there are none."""
+    """One quantity: its fields, or why there are none."""
 
     quantity: str
     fields: dict[str, float] = field(default_factory=dict)
@@ -64,7 +64,7 @@ def calibrate(
 ) -> list[Fit]:
     """Fit all that the walks of one person show; ripples: of each walk, NaN where it is not known.
 
-    Raises UserError naming what is not human.
+    Raises UserError naming a value that is impossible for humans.
     """
     paper = configuration({})
     fits = [
@@ -200,7 +200,7 @@ def _half_foot(walks: Sequence[WalkMeasures]) -> Fit:
 
 
 def _lateral(walks: Sequence[WalkMeasures], config: Any) -> Fit:
-    """The factor that brings the printed amplitude, at the fitted width, to the recorded, [E7]."""
+    """The factor from the paper's amplitude, at the fitted width, to the recorded one, [E7]."""
     from saddlewalk.core import library, model_of
 
     samples = _samples(walks, [walk.lateral_m for walk in walks])

@@ -1,4 +1,4 @@
-"""Marker positions as a laboratory's file holds them, before anybody knows which marker is what."""
+"""Marker positions as in a laboratory's file, before markers are identified."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,11 +17,11 @@ class Capture:
 
     time_s: np.ndarray  # (n,)
     markers: dict[str, np.ndarray]  # name -> (n, 3)
-    unit: str  # of METRES; empty: the file does not say
+    unit: str  # of METRES; empty: not in the file
 
 
 def unit_of(path: Path, text: str) -> str:
-    """A key of METRES. Raises UserError for a text that is none."""
+    """A key of METRES. Raises UserError for another text."""
     plain = text.strip().strip("\0").lower()
     if plain in METRES:
         return plain

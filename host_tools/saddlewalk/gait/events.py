@@ -40,7 +40,7 @@ class Placement:
 
 @dataclass(frozen=True)
 class Gait:
-    """What a recorded walk is made of. NaN where the trial has too few steps to say."""
+    """Measures of a recorded walk. NaN: the trial has too few steps."""
 
     events: tuple[FootEvents, FootEvents]
     contact: np.ndarray  # (2, n) bool
@@ -113,7 +113,7 @@ def placements(recording: Recording) -> list[Placement]:
 def step_pairs(placed: list[Placement]) -> list[tuple[Placement, Placement]]:
     """Each step as the successive placements of opposite feet: from the one, to the other.
 
-    A foot that lies there when the trial begins was not seen to step.
+    A foot on the ground when the trial begins did not make a recorded step.
     """
     return [(a, b) for a, b in itertools.pairwise(placed) if a.side != b.side and b.first > 0]
 

@@ -1,4 +1,4 @@
-"""What a recorded walk measures, step by step: what the gait model is fitted to."""
+"""Measures of a recorded walk, step by step, to which the gait model is fitted."""
 
 from dataclasses import dataclass
 
@@ -28,7 +28,7 @@ HUMAN = {
     "CoM height": (0.35, 1.4, "m"),
     "half the foot": (0.03, 0.15, "m"),
 }
-LONGEST_STEP_S = 3.0  # heel strikes further apart have one between them that was not seen
+LONGEST_STEP_S = 3.0  # between heel strikes further apart one was missed
 ONE_POINT_M = 0.01
 HEEL_HEIGHT_M = (-0.03, 0.15)  # of a heel marker while the foot lies flat
 
@@ -50,7 +50,7 @@ class WalkMeasures:
 
 
 def measure(recording: Recording) -> WalkMeasures:
-    """Raises UserError for what is no walk or, by name, for a mean that no human has."""
+    """Raises UserError if it is not a walk, or for a mean that is impossible for humans."""
     events = (foot_events(recording, 0), foot_events(recording, 1))
     placed = placements(recording)
     pairs = step_pairs(placed)
@@ -157,7 +157,7 @@ def _one_point(recording: Recording) -> str | None:
     apart_m = np.linalg.norm(recording.toe_m - recording.heel_m, axis=2)
     apart_m = apart_m[np.isfinite(apart_m)]
     if not len(apart_m):
-        return "heel and toe are never seen together"
+        return "heel and toe are never visible together"
     return "heel and toe are one point" if np.median(apart_m) < ONE_POINT_M else None
 
 
@@ -210,7 +210,7 @@ def _sways(recording: Recording, placed: list[Placement]) -> tuple[np.ndarray, d
 
 
 def _cosine_m(share: np.ndarray, y_m: np.ndarray) -> float:
-    """Of one period about its mean. What is odd about the middle, as a drift, does not count."""
+    """Of one period about its mean, without the part that is odd about the middle (drift)."""
     shapes = np.stack([np.cos(2 * np.pi * share), np.ones_like(share)], axis=1)
     return float(np.linalg.lstsq(shapes, y_m)[0][0])
 

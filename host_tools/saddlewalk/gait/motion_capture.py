@@ -46,7 +46,7 @@ METATARSUS = (
 SIDE_FIRST = re.compile(r"(?P<side>left|right)(?P<place>.+)")
 SIDE_LAST = re.compile(r"(?![lr][._ -])(?P<place>.+)[._ -](?P<side>l|r|left|right)")
 
-WALKED_M = 1.0  # who went less far walked on a treadmill, or not at all
+WALKED_M = 1.0  # a shorter path: a treadmill, or no walk
 BELT_WINDOW_S = 0.1
 SLOWEST_BELT_M_S = 0.1
 PELVIS_M = (0.25, 1.5)  # above the heels, from a child of two to the tallest adult
@@ -188,7 +188,7 @@ def _in_task_frame(
     toe_m = np.stack([points["left_toe"], points["right_toe"]])
     for name, xyz_m in (("pelvis", com_m), ("left heel", heel_m[0]), ("right heel", heel_m[1])):
         if np.isfinite(xyz_m).all(axis=1).sum() < 2:
-            raise UserError(f"{source}: the {name}'s markers are hardly ever seen")
+            raise UserError(f"{source}: the {name}'s markers are hardly ever visible")
     to_task = _axes(source, com_m, heel_m, toe_m)
     com_m, heel_m, toe_m = (xyz_m @ to_task.T for xyz_m in (com_m, heel_m, toe_m))
     origin_m = com_m[np.isfinite(com_m).all(axis=1)][0] * (1, 1, 0)
@@ -212,7 +212,7 @@ def _axes(source: str, com_m: np.ndarray, heel_m: np.ndarray, toe_m: np.ndarray)
     """
     above_m = (com_m - heel_m)[np.isfinite(com_m - heel_m).all(axis=2)]
     if not len(above_m):
-        raise UserError(f"{source}: pelvis and heels are never seen together")
+        raise UserError(f"{source}: pelvis and heels are never visible together")
     above_m = np.median(above_m, axis=0)
     up = np.zeros(3)
     up[np.abs(above_m).argmax()] = np.sign(above_m[np.abs(above_m).argmax()])
@@ -234,7 +234,7 @@ def _horizontal(vector: np.ndarray, up: np.ndarray) -> np.ndarray:
 
 
 def _belt_speed(time_s: np.ndarray, heel_x_m: np.ndarray) -> float:
-    """What the foot that goes back fastest does most of the time; 0 over ground."""
+    """The usual speed of the foot that moves back fastest; 0 over ground."""
     step = max(1, math.floor(BELT_WINDOW_S / float(np.median(np.diff(time_s)))))
     back_m_s = -(heel_x_m[:, step:] - heel_x_m[:, :-step]) / (time_s[step:] - time_s[:-step])
     both = back_m_s[:, np.isfinite(back_m_s).all(axis=0)]

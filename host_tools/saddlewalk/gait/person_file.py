@@ -44,7 +44,7 @@ def header_text(fits: Sequence[Fit], sources: Sequence[str], path: str) -> str:
 
 
 def _origin(sources: Sequence[str]) -> list[str]:
-    """Where it comes from; a file's name, which has no slash, ends no comment."""
+    """The sources, as comment lines; file names without slashes cannot end a comment."""
     plain = [re.sub(r"[^ -~]", "?", source) for source in sources]
     return [f"Fitted by saddlewalk calibrate {__version__} to:", *plain]
 

@@ -1,4 +1,4 @@
-"""How well the planner's steady walk follows a recorded one.
+"""Tracking error between the planner's steady walk and a recorded one.
 
 The plan starts as the core does, at the foot via point: at every instant at which the recorded CoM
 passes a foot that lies flat, the plan of the recording's mean speed is laid there, over that foot
@@ -29,8 +29,8 @@ class Deviation:
     steps: int
     com_y_m: float
     com_z_m: float
-    com_z_shape_m: float  # less the mean difference in height
-    swing_x_m: float  # of the swing foot from the stance foot, all the way
+    com_z_shape_m: float  # without the mean difference in height
+    swing_x_m: float  # of the swing foot from the stance foot, over the swing
     landing_m: float  # where it then lies
     heel_strike_s: float
     limited: bool  # the speed is not feasible for this configuration, and the plan is slower
