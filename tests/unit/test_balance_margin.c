@@ -27,7 +27,7 @@ void tearDown(void) {}
 /* ---- the equations once more, in double ---------------------------------------------------- */
 
 typedef struct {
-    double vx, vy, height, square, watched, walked, last_height, same_height, climb;
+    double vx, vy, height, square, watched, walked, last_height, same_height, climb, last_climb;
     bool begun;
 } twin_t;
 
@@ -63,6 +63,7 @@ static double twin_margin_of(twin_t *twin, const saddle_measurement_t *seen, dou
         if (z != twin->last_height) {
             const double since_s = twin->same_height;
             const double rate = (z - twin->last_height) / since_s;
+            twin->last_climb = twin->climb;
             twin->climb += fmin(since_s / 0.08, 1.0) * (rate - twin->climb);
             twin->last_height = z;
             twin->same_height = 0.0;
@@ -88,7 +89,7 @@ static double twin_margin_of(twin_t *twin, const saddle_measurement_t *seen, dou
         const double counted = fmax(fmin(square, 4.0 * twin->square), 0.005 * 0.005);
         twin->square += ripple_share * (counted - twin->square);
     }
-    return fmin(margin, 6.0 * (0.36 - fmax(0.0, -twin->climb) / s));
+    return fmin(margin, 6.0 * (0.36 - fmax(0.0, -fmax(twin->climb, twin->last_climb)) / s));
 }
 
 /* ---- what is measured ---------------------------------------------------------------------- */

@@ -42,6 +42,7 @@ void saddle_learning_gap(saddle_learning_t *learning)
 {
     learning->height_known = false;
     learning->climb_m_s = 0.0f;
+    learning->last_climb_m_s = 0.0f;
 }
 
 /* Over the time since the last height that was another: a sensor may be slower than the ticks. */
@@ -51,11 +52,13 @@ static void climb(saddle_learning_t *learning, float height_m)
     const float risen_m = height_m - learning->last_height_m;
     if (since_s > 0.0f && (risen_m < 0.0f || risen_m > 0.0f)) {
         const float share = saddle_clamp(since_s / FIRST_S, 0.0f, 1.0f);
+        learning->last_climb_m_s = learning->climb_m_s;
         learning->climb_m_s += share * (risen_m / since_s - learning->climb_m_s);
         learning->last_height_m = height_m;
         learning->same_height_s = 0.0f;
     } else if (since_s > SAME_HEIGHT_MAX_S) {
         learning->climb_m_s = 0.0f;
+        learning->last_climb_m_s = 0.0f;
     }
 }
 

@@ -40,8 +40,10 @@ saddle_departure_t saddle_departure(const saddle_model_t *model, const saddle_le
                         saddle_vec2_scale(config->departure_foresight * per_speed, unusual_m_s));
     departure.offset.y *= config->departure_lateral_weight;
     departure.step = 0.5f * config->departure_step_share * apart_m * per_height;
-    departure.sinking = per_speed * saddle_larger(0.0f, -learning->climb_m_s);
-    departure.sink = config->departure_sink_share * departure.sinking;
+    const float slower_m_s = saddle_larger(learning->climb_m_s, learning->last_climb_m_s);
+    departure.sinking = per_speed * saddle_larger(0.0f, -slower_m_s);
+    departure.sink =
+        config->departure_sink_share * per_speed * saddle_larger(0.0f, -learning->climb_m_s);
     return departure;
 }
 

@@ -11,8 +11,9 @@ typedef struct {
     saddle_vec2_t offset; /**< of the CoM, predicted, from midway between the feet; across it is
                                weighted */
     float step;           /**< what the distance of the feet bears */
-    float sinking;        /**< how fast the CoM sinks, at least 0 */
-    float sink;           /**< the part of that that counts as a departure */
+    float sinking;        /**< how fast the CoM sinks, now and at the height before, at least 0: a
+                               height that jumps once is no collapse */
+    float sink;           /**< the part of a departure that sinking is */
 } saddle_departure_t;
 
 /** [E33] CoM and both feet are known and learning has watched the CoM. */

@@ -186,10 +186,10 @@ typedef struct {
     float ripple_square;
     float watched_s, walked_s;          /**< learned from, up to the forgetting time */
     float last_height_m, same_height_s; /**< the last that was new, and since when */
-    float climb_m_s;                    /**< vertical velocity of the CoM, over 80 ms */
-    float lowest_margin;                /**< since the last heel strike */
-    bool height_known;                  /**< the last tick measured the CoM */
-    bool begun;                         /**< a margin was known */
+    float climb_m_s, last_climb_m_s; /**< vertical velocity of the CoM, over 80 ms; that before */
+    float lowest_margin;             /**< since the last heel strike */
+    bool height_known;               /**< the last tick measured the CoM */
+    bool begun;                      /**< a margin was known */
 } saddle_learning_t;
 
 typedef struct {
