@@ -217,9 +217,13 @@ static void test_landing_beside_the_stance_foot_divides_nothing_by_zero(void)
 {
     walk_to_landing(true, 0);
     cycle.position = 0;
+#ifdef FE_DIVBYZERO /* where the processor, or its library, keeps such flags */
     feclearexcept(FE_ALL_EXCEPT);
     TEST_ASSERT_FALSE(land_at(0.05f, 0.0f));
     TEST_ASSERT_EQUAL_HEX32(0, fetestexcept(FE_DIVBYZERO | FE_INVALID));
+#else
+    TEST_ASSERT_FALSE(land_at(0.05f, 0.0f));
+#endif
 }
 
 static void test_landing_far_beyond_a_short_step_or_the_leg_is_refused(void)
