@@ -53,7 +53,7 @@ def test_a_walk_has_the_very_frames_of_the_host_process(tmp_path, capsys):
     printed = capsys.readouterr().out
     assert by_host == by_controller == 0, printed
     assert f"controller: {round(8 / TICK_S)} ticks, 0 late, 0 missed" in printed
-    assert "a controller has none" in printed
+    assert "a controller has no LCM" in printed
 
 
 def assert_same_frames(by_host: list[can.Message], by_controller: list[can.Message]) -> None:
