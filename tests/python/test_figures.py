@@ -50,6 +50,28 @@ LEADS = "lead time, median and 10th percentile"
 STEADY = "unperturbed steady walking announced unstable"
 
 
+def machines(name: str) -> list[list[float]]:
+    """Numbers of h1's and apollo's cells in the side-by-side table."""
+    page = (paths.CHECKOUT / "docs/evaluation.md").read_text().partition("side by side\n")[2]
+    (line,) = re.findall(rf"^\| {re.escape(name)} \|(.*)\|$", page, re.MULTILINE)
+    return [[float(n) for n in re.findall(r"[\d.]+", cell)] for cell in line.split("|")[2:4]]
+
+
+def test_the_falls_of_machines():
+    pushes, falls, timely = readme(
+        r"pushed (\d+) times .*? every one of their (\d+) falls is announced, (\d+) % at least"
+    )
+    counts = machines("pushed walks, falls")
+    assert [pushes, falls] == [sum(each) for each in zip(*counts, strict=True)]
+    assert [each[0] for each in machines("falls with an alarm before")] == [100, 100]
+    assert [round(each[0]) for each in machines("at least 0.24 s before")] == [timely, timely]
+    alarms = readme(r"alarm in (\d+) % \(h1\) and (\d+) % \(apollo\)")
+    assert alarms == [round(each[0]) for each in machines("an alarm without a fall")]
+    (minutes,) = readme(r"none in (\d+) minutes of steady walking")
+    (h1, apollo) = machines("steady walking: unstable")
+    assert (h1[0], apollo[0], h1[1] + apollo[1]) == (0, 0, minutes)
+
+
 def test_the_effect_of_the_recovery_step():
     (share,) = readme(r"recovery step prevents the fall for (\d+) % of the pushes")
     text = (paths.CHECKOUT / "docs/evaluation.md").read_text()
@@ -67,6 +89,6 @@ def test_the_planning_time():
 def test_no_figure_goes_unchecked():
     """A number with a unit among the README's claims stands in one of the tests above."""
     claims = TEXT.partition("## How good it is")[2].partition("## The commands")[0]
-    assert len(re.findall(r"\d[\d,.]* (?:%|s\b|minutes|instructions|bytes|times)", claims)) == 9
+    assert len(re.findall(r"\d[\d,.]* (?:%|s\b|minutes|instructions|bytes|times)", claims)) == 15
     with pytest.raises(AssertionError):
         readme(r"never in the README (\d)")
