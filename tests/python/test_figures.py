@@ -53,8 +53,10 @@ STEADY = "unperturbed steady walking announced unstable"
 def machines(name: str) -> list[list[float]]:
     """Numbers of h1's and apollo's cells in the side-by-side table."""
     page = (paths.CHECKOUT / "docs/evaluation.md").read_text().partition("side by side\n")[2]
-    (line,) = re.findall(rf"^\| {re.escape(name)} \|(.*)\|$", page, re.MULTILINE)
-    return [[float(n) for n in re.findall(r"[\d.]+", cell)] for cell in line.split("|")[2:4]]
+    line = re.search(rf"^\| {re.escape(name)} \|(.*)\|$", page, re.MULTILINE)
+    assert line, name
+    cells = line[1].split("|")[2:4]
+    return [[float(n) for n in re.findall(r"[\d.]+", cell)] for cell in cells]
 
 
 def test_the_falls_of_machines():
