@@ -1,4 +1,6 @@
-"""Where the built firmware is: the environment's SADDLEWALK_BUILD, else `build` in the checkout."""
+"""Where the built firmware is: SADDLEWALK_BUILD, a folder in the checkout or an absolute path, else
+`build`.
+"""
 
 import os
 from pathlib import Path
@@ -10,7 +12,7 @@ CHECKOUT = Path(__file__).resolve().parents[2]
 
 def build_dir() -> Path:
     """The CMake build folder; it need not exist yet."""
-    return Path(os.environ.get("SADDLEWALK_BUILD") or CHECKOUT / "build")
+    return CHECKOUT / (os.environ.get("SADDLEWALK_BUILD") or "build")
 
 
 def need_checkout() -> None:
