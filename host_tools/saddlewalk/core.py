@@ -125,7 +125,8 @@ def model_of(config: Any) -> Any:
 
 def body_of(config: Any) -> Any:
     """The saddle_body_t of a configuration. A copy: a field of a struct does not keep it alive."""
-    return ffi().new("saddle_body_t *", model_of(config).body)[0]
+    model = model_of(config)
+    return ffi().new("saddle_body_t *", model.body)[0]
 
 
 def bos_polygon(config: Any, cops_m: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
