@@ -95,7 +95,7 @@ def test_cansend_moves_the_firmware():
 def test_the_readme_cansend_starts_a_walk():
     readme = (paths.CHECKOUT / "README.md").read_text()
     with lockstep(spec=CLASSIC) as host:
-        run(re.search(r"^ +(cansend vcan0 \S+)", readme, re.MULTILINE)[1])
+        run(re.search(r"^ *(cansend vcan0 \S+)", readme, re.MULTILINE)[1])
         host.measure()
         tick = host.tick()
         assert tick["COMMAND"]["SPEED"] == pytest.approx(1.2)

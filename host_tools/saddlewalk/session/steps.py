@@ -99,17 +99,23 @@ def _measured(run: Run) -> Way:
 
 def _moved(run: Run) -> np.ndarray:
     """The CoM along x, since the tick before."""
-    velocity_m_s = np.where(_known(run, "com"), run.column("input", "com_velocity_m_s", 0), np.nan)
+    seen_m_s = _wide(run.column("input", "com_velocity_m_s", 0))
+    velocity_m_s = np.where(_known(run, "com"), seen_m_s, np.nan)
     means_m_s = (velocity_m_s[1:] + velocity_m_s[:-1]) / 2
     moved_m = np.append(0.0, means_m_s * np.diff(run.time_s))
     moved_m[run.after_silence] = np.nan
     return moved_m
 
 
+def _wide(column: np.ndarray) -> np.ndarray:
+    """In double: sums and differences of any two floats are finite."""
+    return column.astype(float)
+
+
 def _apart(run: Run, axis: int) -> np.ndarray:
     """The left foot from the right one."""
     left_m, right_m = (
-        np.where(_known(run, side), run.column("input", f"{side}_m", axis), np.nan)
+        np.where(_known(run, side), _wide(run.column("input", f"{side}_m", axis)), np.nan)
         for side in SIDES
     )
     return left_m - right_m
