@@ -72,7 +72,7 @@ def draw_reliability(found: Mapping[str, CrossValidation], path: Path) -> None:
         ylabel="observed",
         aspect="equal",
     )
-    axes.legend(loc="upper left")
+    axes.legend(loc="lower right")
     figure.savefig(path)
 
 
