@@ -39,12 +39,12 @@ from saddlewalk import paths
 from saddlewalk.transport.bus import describe, private_udp
 from saddlewalk.transport.lcm_types import plan_t, status_t
 from saddlewalk.transport.wire import WIRE_VERSION, Receiver, frame_crc
+from sanitizer import SANITIZED
 
 FAULT_COMMAND_STALE, LIMIT_SAFE_STOP = 1 << 14, 1 << 5
 STAND = {"MODE": 0, "SPEED": 0.0, "HEEL_STRIKE": 0.0}
 STANDING_MODE, STOPPING = 0, 3
 FLOOD_HZ = 5000
-SANITIZED = "libasan" in os.environ.get("LD_PRELOAD", "")  # whose mlockall() does nothing
 
 
 def until(node: LcmNode, channel: str, is_so, ticks: int = 60):

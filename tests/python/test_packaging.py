@@ -17,6 +17,7 @@ import yaml
 
 from saddlewalk import paths
 from saddlewalk.transport.wire import Receiver
+from sanitizer import WITHOUT
 
 CHECKOUT = paths.CHECKOUT
 CONSUMERS = CHECKOUT / "tests/consumers"
@@ -26,8 +27,9 @@ PACKAGE = runpy.run_path(str(CHECKOUT / "tools/package.py"))
 VERSION = PACKAGE["version"]()
 ERROR_BUILD = 6
 
-# The sanitizer's runtime, if it was loaded for the tests, is not for compilers.
-ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "LD_PRELOAD"}
+ENVIRONMENT = (
+    WITHOUT  # the sanitizer's runtime, if it was loaded for the tests, is not for compilers
+)
 
 
 @cache
