@@ -29,7 +29,7 @@ from saddlewalk.contract import (
     bit_names,
     name_of,
 )
-from saddlewalk.verdict import level_name, reason_words
+from saddlewalk.verdict import level_name, reason_name, reason_words
 
 SILENT_AFTER_S = 1.0
 
@@ -90,7 +90,7 @@ def render(heard: Heard) -> RenderableType:
         Text(banner(level.upper()), style=f"bold {style}"),
         Text(f"level: {level}{words and f', {words}'}", style="bold"),
         _margin_row(current.balance),
-        Text(f"driven by: {driver(current.balance)}"),
+        Text(f"largest departure: {driver(current.balance)}"),
         _bars(current),
         Text(f"recovery: {recovery_step(current.verdict)}"),
         Text(f"energy: {energy(current.verdict)}"),
@@ -110,7 +110,7 @@ def summary(heard: Heard) -> str:
     return " | ".join(
         (
             f"{level.upper()}{words and f': {words}'}",
-            f"margin {margin(current.balance)}, driven by: {driver(current.balance)}",
+            f"margin {margin(current.balance)}, largest departure: {driver(current.balance)}",
             "  ".join(f"{label} {_number(of, name)}" for label, of, name in _numbers(current)),
             f"recovery: {recovery_step(current.verdict)}",
             f"energy: {energy(current.verdict)}",
@@ -140,10 +140,10 @@ def margin(balance: Any) -> str:
 
 
 def driver(balance: Any) -> str:
-    """The largest part of the departure from the wearer's own walk, in words."""
+    """The largest part of the departure from the wearer's own walk: no alarm in itself."""
     if balance is None or math.isnan(balance.margin):
         return NOT_AVAILABLE
-    return reason_words(balance.driver)
+    return reason_name(balance.driver).replace("_", " ")
 
 
 def waiting(silent_s: float) -> str:

@@ -116,7 +116,7 @@ def drawn(heard_: Heard, width: int = 120) -> str:
 
 SHOWN = ["step 17 (right)", "phase 60%", "1.20 m/s", "0.31 s", "0.62", "1.25", "n/a"]
 SHOWN += ["+0.053 (unstable at 0, caution at 0.100)"]
-SHOWN += ["driven by: the body departs to the left of the feet"]
+SHOWN += ["largest departure: left"]
 SHOWN += ["+0.083 m", "-0.214 m", "data age 4 ms", "late ticks 3", "frames rejected 7"]
 SHOWN += ["plan: walking", "tick 512", "+0.097 m", "-0.031 m"]
 SHOWN += ["sideways motion deviates from the expected"]
@@ -191,7 +191,7 @@ def test_the_level_comes_first_and_large_and_in_words():
     assert (
         rows[4].split() == "margin ░░░░│█▒▒░░░░░░░░░░░░░░░░░ +0.053".split() + rows[4].split()[3:]
     )
-    assert rows[5].startswith("driven by: ")
+    assert rows[5].startswith("largest departure: ")
     line = dashboard.summary(heard())
     assert line.startswith("CAUTION: sideways motion deviates from the expected | margin +0.053 (")
 
@@ -215,7 +215,7 @@ def test_a_margin_that_is_not_known_has_no_bar_and_no_driver():
     message = balance()
     message.margin = message.caution_below = math.nan
     text = drawn(heard(balance=message))
-    assert re.search(r"margin +·{25} n/a", text) and "driven by: n/a" in text
+    assert re.search(r"margin +·{25} n/a", text) and "largest departure: n/a" in text
 
 
 @pytest.mark.parametrize("name", contract.LEVELS)

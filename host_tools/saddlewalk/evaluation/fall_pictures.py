@@ -32,6 +32,7 @@ from saddlewalk.pictures.walk import (
     PINK,
     RED,
     SKY,
+    draw_arrow,
     draw_level,
 )
 from saddlewalk.verdict import reason_name
@@ -157,16 +158,7 @@ def _draw_push(axes: Axes, walk: Walk) -> None:
     index = np.flatnonzero(walk.states.t_s >= walk.push_s)[0]
     at = complex(*walk.states.com_m[index, :2])
     tail = at - 0.3 * walk.push_n_s / abs(walk.push_n_s)
-    axes.annotate(
-        "push",
-        xy=(at.real, at.imag),
-        xytext=(tail.real, tail.imag),
-        arrowprops={"arrowstyle": "-|>", "color": PINK, "lw": 3},
-        color=PINK,
-        ha="center",
-        va="center",
-        weight="bold",
-    )
+    draw_arrow(axes, "push", tail, at)
 
 
 def _name_reasons(axes: Axes, t_s: np.ndarray, level: np.ndarray, reason: np.ndarray) -> None:

@@ -205,12 +205,10 @@ def _lateral_limits(walk: Columns) -> tuple[float, float]:
     return min(lateral.min() - 0.15, -0.5), max(lateral.max() + 0.15, 0.5)
 
 
-def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
-    index = int(np.argmin(np.abs(walk["t_s"] - push.time_s)))
-    at = complex(walk["true_com_x_m"][index], walk["true_com_y_m"][index])
-    tail = at - 0.4 * push.vector_n_s / abs(push.vector_n_s)
+def draw_arrow(axes: Axes, text: str, tail: complex, at: complex) -> None:
+    """Of a push, x forward + 1j * y to the left."""
     axes.annotate(
-        f"push\n{push.impulse_n_s:.3g} N·s",
+        text,
         xy=(at.real, at.imag),
         xytext=(tail.real, tail.imag),
         arrowprops={"arrowstyle": "-|>", "color": PINK, "lw": 3},
@@ -219,6 +217,13 @@ def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
         va="center",
         weight="bold",
     )
+
+
+def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
+    index = int(np.argmin(np.abs(walk["t_s"] - push.time_s)))
+    at = complex(walk["true_com_x_m"][index], walk["true_com_y_m"][index])
+    tail = at - 0.4 * push.vector_n_s / abs(push.vector_n_s)
+    draw_arrow(axes, f"push\n{push.impulse_n_s:.3g} N·s", tail, at)
 
 
 def _draw_height(axes: Axes, walk: Columns) -> None:
