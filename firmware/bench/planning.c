@@ -9,6 +9,14 @@ static uint64_t now_ns(void)
     return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
 
+/* Tick and scores at input->time_us. */
+static bool update(saddle_context_t *context, const saddle_input_t *input, saddle_output_t *output,
+                   saddle_scores_t *scores)
+{
+    return saddle_tick(context, input, output) == SADDLE_OK &&
+           saddle_score_plan(context, &output->plan, scores) == SADDLE_OK;
+}
+
 uint64_t saddle_bench_plan_ns(saddle_context_t *context, const saddle_command_t *command,
                               uint32_t period_us, uint32_t instants, saddle_output_t *outputs,
                               saddle_scores_t *scores)
@@ -20,13 +28,22 @@ uint64_t saddle_bench_plan_ns(saddle_context_t *context, const saddle_command_t 
         return 0;
     }
     for (uint32_t k = 0; k < instants; k++) {
-        if (saddle_tick(context, &input, &outputs[k]) != SADDLE_OK) {
+        if (!update(context, &input, &outputs[k], &scores[k])) {
             return 0;
         }
-        (void)saddle_score_plan(context, &outputs[k].plan, &scores[k]);
         input.time_us += period_us;
     }
     return now_ns() - start_ns;
+}
+
+uint64_t saddle_bench_update_ns(saddle_context_t *context, const saddle_command_t *command,
+                                uint32_t period_us, saddle_output_t *output,
+                                saddle_scores_t *scores)
+{
+    saddle_input_t input = {.command = *command, .measurement = saddle_no_measurement()};
+    input.time_us = context->last_time_us + period_us;
+    const uint64_t start_ns = now_ns();
+    return update(context, &input, output, scores) ? now_ns() - start_ns : 0;
 }
 
 uint64_t saddle_bench_floor_ns(const saddle_bench_calls_t *calls, const float *arguments,

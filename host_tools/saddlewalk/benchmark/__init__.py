@@ -1,1 +1,1 @@
-"""What planning costs, beside its neighbours."""
+"""Planning time of the core, compared with other planners."""

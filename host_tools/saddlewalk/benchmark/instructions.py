@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from saddlewalk.benchmark.neighbours import MissingError
-from saddlewalk.benchmark.timing import told_calls
+from saddlewalk.benchmark.baselines import MissingError
+from saddlewalk.benchmark.timing import recorded_calls
 from saddlewalk.contract import LEVELS, MODES
 from saddlewalk.paths import built
 
@@ -53,7 +53,7 @@ class Group:
 
 def count() -> list[Group]:
     """The groups of updates, and saddle_init(). Raises MissingError without valgrind."""
-    calls = told_calls()
+    calls = recorded_calls()
     printed, instructions = _callgrind(UPDATE, calls)
     _, floors = _callgrind(FLOOR, calls)
     _, init = _callgrind(INIT, calls)

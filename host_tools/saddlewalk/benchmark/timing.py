@@ -1,9 +1,10 @@
-"""Planning times of the core and other planners, in one process, interleaved.
+"""Planning times of the core and other planners, in one process, interleaved, cold and warm.
 
 The walk is the paper's: the mean person at 1.2 m/s and 10 degrees, an instant every 80 ms.
 """
 
 import functools
+import itertools
 import math
 import statistics
 import subprocess
@@ -15,18 +16,18 @@ from typing import Any
 import cffi
 import numpy as np
 
-from saddlewalk.benchmark.neighbours import MissingError
-from saddlewalk.benchmark.neighbours.numpy_plan import Body, plan, step_width
-from saddlewalk.benchmark.neighbours.octave_plan import Octave
-from saddlewalk.benchmark.neighbours.placo_walk import FOOT_LENGTH_M, FOOT_WIDTH_M, PlacoWalk
-from saddlewalk.benchmark.neighbours.walking_qp import SOLVERS, Axis, Preview, WalkingQp
+from saddlewalk.benchmark.baselines import MissingError
+from saddlewalk.benchmark.baselines.numpy_plan import Body, plan, step_width
+from saddlewalk.benchmark.baselines.octave_plan import Octave
+from saddlewalk.benchmark.baselines.placo_walk import FOOT_LENGTH_M, FOOT_WIDTH_M, PlacoWalk
+from saddlewalk.benchmark.baselines.walking_qp import SOLVERS, Axis, Preview, WalkingQp
 from saddlewalk.contract import TICK_S
 from saddlewalk.errors import UserError
 from saddlewalk.paths import built
 
 SPEED_M_S = 1.2
 HEEL_STRIKE_RAD = math.radians(10)
-HORIZONS = (1, 10)  # strides
+TICK_US = round(TICK_S * 1e6)
 BODY = Body()
 STEP_M = 2 * (0.1802 * SPEED_M_S + 0.1351)
 STEP_TIME_S = STEP_M / SPEED_M_S
@@ -39,7 +40,16 @@ NUMPY, NUMPY_AT_ONCE = "numpy, instant by instant", "numpy, all instants at once
 OCTAVE, OCTAVE_AT_ONCE = "Octave, instant by instant", "Octave, all instants at once"
 PLACO = "placo's walk planner"
 
-Run = Callable[[int], float]  # strides -> seconds of one plan
+# What is timed: the next instant of a walk in progress, and walks planned from their first instant.
+UPDATE = "update"
+STRIDES = {"1 stride": 1, "10 strides": 10}
+TASKS = (UPDATE, *STRIDES)
+COLD, WARM = "cold", "warm"
+EVICTING_BYTES = 64 * 2**20  # more than the caches of one core hold
+WARM_UP = 3  # runs that are not counted
+
+Plan = Callable[[int], float]  # strides -> seconds
+Runs = dict[str, Callable[[], float]]  # of TASKS, those that the planner can do -> seconds
 
 
 def qp_name(solver: str) -> str:
@@ -66,7 +76,7 @@ class CorePlan:
 
     def __init__(self, speed_m_s: float = SPEED_M_S, hs_rad: float = HEEL_STRIKE_RAD) -> None:
         ffi, library = _library()
-        most = len(instants(HORIZONS[-1]))
+        most = len(instants(max(STRIDES.values())))
         self.outputs = ffi.new("saddle_output_t[]", most)
         self.scores = ffi.new("saddle_scores_t[]", most)
         self._context = ffi.new("saddle_context_t *")
@@ -82,15 +92,28 @@ class CorePlan:
 
     def plan(self, count: int) -> float:
         """Seconds; the plan is in outputs and scores."""
-        nanoseconds = _library()[1].saddle_bench_plan_ns(
-            self._context, self._command, round(TICK_S * 1e6), count, self.outputs, self.scores
+        return self._checked(
+            _library()[1].saddle_bench_plan_ns(
+                self._context, self._command, TICK_US, count, self.outputs, self.scores
+            )
         )
+
+    def update(self) -> float:
+        """Seconds of the next instant of the walk; it is in the first of outputs and scores."""
+        return self._checked(
+            _library()[1].saddle_bench_update_ns(
+                self._context, self._command, TICK_US, self.outputs, self.scores
+            )
+        )
+
+    @staticmethod
+    def _checked(nanoseconds: int) -> float:
         if nanoseconds == 0:
-            raise ValueError("the core refuses to plan")
+            raise ValueError("the core rejects the walk")
         return nanoseconds * 1e-9
 
 
-def told_calls() -> str:
+def recorded_calls() -> str:
     """The output of saddlewalk-bench-calls: lines of walk, update, function, argument."""
     program = built("bin/saddlewalk-bench-calls")
     done = subprocess.run([program], capture_output=True, text=True)
@@ -102,7 +125,7 @@ def told_calls() -> str:
 def calls_of_plan() -> list[list[list[float]]]:
     """Of each update of the plan's walk: the arguments of each of FUNCTIONS."""
     updates: dict[str, list[list[float]]] = {}
-    for line in told_calls().splitlines():
+    for line in recorded_calls().splitlines():
         walk, update, function, argument = line.split()
         if walk == "0":
             arguments = updates.setdefault(update, [[] for _ in FUNCTIONS])
@@ -121,38 +144,68 @@ class Floor:
         flat = [x for update in updates for arguments in update for x in arguments]
         self._arguments = ffi.new("float[]", flat)
         self._sum = ffi.new("float *")
+        totals = (sum(map(len, update)) for update in updates)
+        begins = itertools.accumulate(totals, initial=0)
+        self._updates = itertools.cycle(list(zip(range(len(updates)), begins, strict=False)))
 
     def seconds(self, strides: int) -> float:
+        return self._seconds(0, 0, len(instants(strides)))
+
+    def update(self) -> float:
+        return self._seconds(*next(self._updates), 1)
+
+    def _seconds(self, first: int, argument: int, updates: int) -> float:
         nanoseconds = _library()[1].saddle_bench_floor_ns(
-            self._calls, self._arguments, len(instants(strides)), self._sum
+            self._calls + first, self._arguments + argument, updates, self._sum
         )
         return nanoseconds * 1e-9
 
 
-def timed(work: Callable[[int], object]) -> Run:
-    def run(strides: int) -> float:
-        began_ns = time.perf_counter_ns()
-        work(strides)
-        return (time.perf_counter_ns() - began_ns) * 1e-9
-
-    return run
+def runs_of(plan: Plan, update: Callable[[], float] | None) -> Runs:
+    plans: Runs = {name: functools.partial(plan, strides) for name, strides in STRIDES.items()}
+    return plans if update is None else {UPDATE: update, **plans}
 
 
-def _numpy(at_once: bool) -> Run:
-    times = {strides: instants(strides) for strides in HORIZONS}
-
-    def work(strides: int) -> None:
-        for t_s in [times[strides]] if at_once else times[strides]:
-            plan(BODY, SPEED_M_S, HEEL_STRIKE_RAD, t_s)
-
-    return timed(work)
+def timed(work: Callable[[], object]) -> float:
+    began_ns = time.perf_counter_ns()
+    work()
+    return (time.perf_counter_ns() - began_ns) * 1e-9
 
 
-def _octave(at_once: bool) -> Run:
+def _core() -> Runs:
+    walking = CorePlan()
+    walking.plan(1)
+    return runs_of(CorePlan().seconds, walking.update)
+
+
+def _floor() -> Runs:
+    floor = Floor()
+    return runs_of(floor.seconds, floor.update)
+
+
+def _by_instants(seconds: Callable[[np.ndarray, bool], float], at_once: bool) -> Runs:
+    """seconds(instants, all at once or one by one); what plans all at once has no single update."""
+    times = {strides: instants(strides) for strides in STRIDES.values()}
+    single = itertools.cycle(np.split(times[1], len(times[1])))
+    update = None if at_once else lambda: seconds(next(single), False)
+    return runs_of(lambda strides: seconds(times[strides], at_once), update)
+
+
+def _numpy(at_once: bool) -> Runs:
+    def seconds(t_s: np.ndarray, at_once: bool) -> float:
+        parts = [t_s] if at_once else t_s
+        return timed(lambda: [plan(BODY, SPEED_M_S, HEEL_STRIKE_RAD, part) for part in parts])
+
+    return _by_instants(seconds, at_once)
+
+
+def _octave(at_once: bool) -> Runs:
     octave = Octave()
-    return lambda strides: octave.seconds(
-        SPEED_M_S, HEEL_STRIKE_RAD, instants(strides).tolist(), at_once
-    )
+
+    def seconds(t_s: np.ndarray, at_once: bool) -> float:
+        return octave.seconds(SPEED_M_S, HEEL_STRIKE_RAD, t_s.tolist(), at_once)
+
+    return _by_instants(seconds, at_once)
 
 
 def preview(strides: int) -> Preview:
@@ -171,23 +224,32 @@ def axes(strides: int) -> tuple[Axis, Axis]:
     return along, Axis(np.array([y, 0, pull]), 0.0, side, FOOT_WIDTH_M / 2)
 
 
-def _walking_qp(solver: str) -> Run:
-    programmes = {strides: WalkingQp(solver, preview(strides)) for strides in HORIZONS}
-    walks = {strides: axes(strides) for strides in HORIZONS}
-    return timed(lambda strides: [programmes[strides].jerk(axis) for axis in walks[strides]])
+def _by_horizon(plan: Plan) -> Runs:
+    """A planner by optimisation solves a stride's horizon at each update (receding horizon)."""
+    return runs_of(plan, functools.partial(plan, 1))
 
 
-def _placo() -> Run:
+def _walking_qp(solver: str) -> Runs:
+    programmes = {n: WalkingQp(solver, preview(n)) for n in STRIDES.values()}
+    walks = {n: axes(n) for n in STRIDES.values()}
+
+    def seconds(strides: int) -> float:
+        return timed(lambda: [programmes[strides].jerk(axis) for axis in walks[strides]])
+
+    return _by_horizon(seconds)
+
+
+def _placo() -> Runs:
     walk = PlacoWalk(STEP_M, STEP_TIME_S, WIDTH_M, PENDULUM_M, TICK_S)
-    return timed(lambda strides: walk.plan(2 * strides))
+    return _by_horizon(lambda strides: timed(lambda: walk.plan(2 * strides)))
 
 
-def neighbours() -> dict[str, Callable[[], Run]]:
+def planners() -> dict[str, Callable[[], Runs]]:
     """What is measured, by name: each is made once, or raises MissingError."""
     qps = {qp_name(solver): functools.partial(_walking_qp, solver) for solver in SOLVERS}
     return {
-        CORE: lambda: CorePlan().seconds,
-        FLOOR: lambda: Floor().seconds,
+        CORE: _core,
+        FLOOR: _floor,
         NUMPY: lambda: _numpy(at_once=False),
         NUMPY_AT_ONCE: lambda: _numpy(at_once=True),
         OCTAVE: lambda: _octave(at_once=False),
@@ -199,37 +261,49 @@ def neighbours() -> dict[str, Callable[[], Run]]:
 
 @dataclass
 class Timing:
-    """Seconds of every plan, by strides; or why there is none."""
+    """Seconds of every run of a planner, by task and state of the caches; or why there is none."""
 
     name: str
-    seconds: dict[int, list[float]] = field(default_factory=lambda: {n: [] for n in HORIZONS})
+    seconds: dict[str, dict[str, list[float]]] = field(default_factory=dict)
     missing: str | None = None
 
-    def median_s(self, strides: int) -> float:
-        return statistics.median(self.seconds[strides])
+    def add(self, task: str, caches: str, seconds: float) -> None:
+        self.seconds.setdefault(task, {COLD: [], WARM: []})[caches].append(seconds)
 
-    def worst_s(self, strides: int) -> float:
-        return max(self.seconds[strides])
+    def median_s(self, task: str, caches: str) -> float:
+        return statistics.median(self.seconds[task][caches])
+
+    def worst_s(self, task: str, caches: str) -> float:
+        return max(self.seconds[task][caches])
 
 
-def measure(rounds: int) -> dict[str, Timing]:
-    """Every installed planner, interleaved, `rounds` times after one warm-up."""
-    timings = {name: Timing(name) for name in neighbours()}
-    runs = dict(_make(timings))
+def measure(rounds: int) -> list[Timing]:
+    """Every planner of planners(), interleaved, `rounds` times.
+
+    Cold: after as much other data were read as the caches hold. Warm: right after the same run.
+    """
+    timings = {name: Timing(name) for name in planners()}
+    made = dict(_make(timings))
+    other_data = np.ones(EVICTING_BYTES // 8)
     for _ in range(rounds):
-        for name, run in runs.items():
-            for strides in HORIZONS:
-                timings[name].seconds[strides].append(run(strides))
-    return timings
+        for task in TASKS:
+            for name, runs in made.items():
+                if task in runs:
+                    other_data.sum()
+                    timings[name].add(task, COLD, runs[task]())
+                    for _ in range(WARM_UP):
+                        runs[task]()
+                    timings[name].add(task, WARM, runs[task]())
+    return list(timings.values())
 
 
-def _make(timings: dict[str, Timing]) -> Iterator[tuple[str, Run]]:
-    for name, make in neighbours().items():
+def _make(timings: dict[str, Timing]) -> Iterator[tuple[str, Runs]]:
+    for name, make in planners().items():
         try:
-            run = make()
-            for strides in HORIZONS:
-                run(strides)
+            runs = make()
+            for run in runs.values():
+                run()
         except MissingError as missing:
             timings[name].missing = str(missing)
         else:
-            yield name, run
+            yield name, runs

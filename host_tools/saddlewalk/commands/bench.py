@@ -11,17 +11,18 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "bench",
         help="planning time of the core and other planners, and its instructions",
-        description="Measure what the paper measured: the time to plan 1 and 10 strides with "
-        "scores, gravity and margins. For comparison: the same equations in numpy and GNU Octave, "
-        "walking QPs, placo, and a floor. What is not installed is named and skipped. Times depend "
-        "on the machine's load; the instruction counts, by valgrind, do not.",
+        description="Measure the time of one update, and of planning 1 and 10 strides with scores, "
+        "gravity and margins, with cold and warm caches. For comparison: the same equations in "
+        "numpy and GNU Octave, walking QPs (make bench-baselines), placo, and a floor: only the "
+        "core's calls of sin, exp, sqrt and the like. What is not installed is named and skipped. "
+        "Times depend on the machine's load; the instruction counts, by valgrind, do not.",
     )
     parser.add_argument(
         "--rounds",
         type=whole_number_in(1, 10**5),
         default=50,
         metavar="N",
-        help="rounds, in which each planner runs once (default 50)",
+        help="rounds, each with one cold and one warm run of every planner (default 50)",
     )
     add_output(parser, "--json", metavar="FILE", help="the results as JSON; - for standard output")
     parser.set_defaults(run=run)
@@ -33,7 +34,7 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.atomic_write import write_text
     from saddlewalk.benchmark import instructions
     from saddlewalk.benchmark import report as bench_report
-    from saddlewalk.benchmark.neighbours import MissingError
+    from saddlewalk.benchmark.baselines import MissingError
     from saddlewalk.benchmark.timing import measure
 
     timings = measure(args.rounds)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from saddlewalk.benchmark.neighbours import MissingError
+from saddlewalk.benchmark.baselines import MissingError
 
 SCRIPT = Path(__file__).with_name("plan_walk.m")
 ROWS = (

@@ -6,7 +6,7 @@ strides that are asked for. It plans for a robot; this one is the simplest that 
 
 import numpy as np
 
-from saddlewalk.benchmark.neighbours import MissingError
+from saddlewalk.benchmark.baselines import MissingError
 from saddlewalk.stderr_redirect import stderr_silenced
 
 # What a foot is to the walking QP as well: placo's feet lie along x, m.

@@ -10,11 +10,11 @@ from functools import cached_property
 
 import numpy as np
 
-from saddlewalk.benchmark.neighbours import MissingError
+from saddlewalk.benchmark.baselines import MissingError
 from saddlewalk.contract import GRAVITY_M_S2
 
 SOLVERS = ("quadprog", "daqp", "osqp")
-INSTALL = "not installed: make neighbours"
+INSTALL = "not installed: make bench-baselines"
 
 # What the programmes weigh against (CoP from the middle of the foot)^2, m^2.
 JERK_WEIGHT_S6 = 1e-6

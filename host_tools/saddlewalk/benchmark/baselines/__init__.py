@@ -1,4 +1,4 @@
-"""What the core is measured beside: its equations elsewhere, and what people plan walks with."""
+"""What the core is compared with: its equations in other languages, and other walking planners."""
 
 
 class MissingError(Exception):
