@@ -1,11 +1,13 @@
-# cmake --install: find_package(saddlewalk CONFIG) then has saddlewalk::core and saddlewalk::wire.
+# cmake --install: find_package(saddlewalk CONFIG) then has saddlewalk::core, saddlewalk::joints and
+# saddlewalk::wire.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/saddlewalk)
-install(TARGETS saddlewalk_core saddlewalk_wire EXPORT saddlewalk
+install(TARGETS saddlewalk_core saddlewalk_joints saddlewalk_wire EXPORT saddlewalk
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(DIRECTORY firmware/core/include/saddlewalk firmware/wire/include/saddlewalk
+install(DIRECTORY firmware/core/include/saddlewalk firmware/joints/include/saddlewalk
+                  firmware/wire/include/saddlewalk
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES firmware/wire/saddlewalk.dbc DESTINATION ${CMAKE_INSTALL_DATADIR}/saddlewalk)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

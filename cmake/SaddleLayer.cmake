@@ -4,13 +4,14 @@
 #
 # saddle_layer(ROOM/NAME [USES layer...])
 #
-# One layer of the core: src/ROOM/NAME.h and, if there is one, src/ROOM/NAME.c. It sees its own header
+# One layer of a library: src/ROOM/NAME.h and, if there is one, src/ROOM/NAME.c. It sees its own header
 # and those of the layers that it USES, and no others: each layer has a folder of links to its
 # headers, and only the folders of NAME and USES are on the include path. USES is not transitive, and
 # a layer must be declared before it is used: arrows point down.
 #
-# The layers' objects are collected in the global property SADDLE_LAYER_OBJECTS, the public headers in
-# SADDLE_CORE_HEADERS, and the layers' names, from the lowest up, in SADDLE_CORE_LAYERS.
+# The caller has set SADDLE_LIBRARY, as CORE. The layers' objects are collected in the global property
+# SADDLE_CORE_LAYER_OBJECTS, the public headers in SADDLE_CORE_HEADERS, and the layers' names, from the
+# lowest up, in SADDLE_CORE_LAYERS.
 include_guard(GLOBAL)
 include(${CMAKE_CURRENT_LIST_DIR}/SaddleStrict.cmake)
 
@@ -33,7 +34,7 @@ function(saddle_public name)
     list(TRANSFORM ARGN PREPEND saddlewalk/)
     saddle_view(${name} ${from} ${ARGN})
     list(TRANSFORM ARGN PREPEND ${from}/)
-    set_property(GLOBAL APPEND PROPERTY SADDLE_CORE_HEADERS ${ARGN})
+    set_property(GLOBAL APPEND PROPERTY SADDLE_${SADDLE_LIBRARY}_HEADERS ${ARGN})
 endfunction()
 
 function(saddle_layer name)
@@ -43,7 +44,7 @@ function(saddle_layer name)
         saddle_view(${name} ${from} ${name}.h)
         list(PREPEND LAYER_USES ${name})
     endif()
-    set_property(GLOBAL APPEND PROPERTY SADDLE_CORE_LAYERS ${name})
+    set_property(GLOBAL APPEND PROPERTY SADDLE_${SADDLE_LIBRARY}_LAYERS ${name})
     if(NOT EXISTS ${from}/${name}.c)
         return()
     endif()
@@ -59,5 +60,6 @@ function(saddle_layer name)
         endif()
         target_link_libraries(${target} PRIVATE ${view})
     endforeach()
-    set_property(GLOBAL APPEND PROPERTY SADDLE_LAYER_OBJECTS $<TARGET_OBJECTS:${target}>)
+    set_property(GLOBAL APPEND PROPERTY SADDLE_${SADDLE_LIBRARY}_LAYER_OBJECTS
+                 $<TARGET_OBJECTS:${target}>)
 endfunction()

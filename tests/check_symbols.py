@@ -1,4 +1,4 @@
-"""The core needs nothing but sqrtf and keeps no globals: its archive's symbols must say so.
+"""A library needs nothing but sqrtf and keeps no globals: its archive's symbols must say so.
 
 usage: check_symbols.py NM ARCHIVE
 
@@ -34,9 +34,9 @@ def main() -> None:
     needed = sorted({name for name, kind, _ in found if kind in "Uw"} - defined - ALLOWED)
     variables = sorted(name for name, kind, section in found if is_variable(kind, section))
     for name in needed:
-        print(f"the core calls {name}, which is not part of it")
+        print(f"it calls {name}, which is not part of it")
     for name in variables:
-        print(f"the core has the variable {name}, which is not in the caller's context")
+        print(f"it has the variable {name}, which is not in the caller's context")
     sys.exit(bool(needed or variables))
 
 

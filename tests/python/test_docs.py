@@ -3,11 +3,14 @@
 import re
 from pathlib import Path
 
+import pytest
+
 CHECKOUT = Path(__file__).parents[2]
-TAG = re.compile(r"\[E\d+\]")
-
-
-CORE = CHECKOUT / "firmware/core"
+# The page of a library, its sources and the letter of its tags.
+LIBRARIES = [
+    ("docs/equations.md", CHECKOUT / "firmware/core", "E"),
+    ("docs/joints.md", CHECKOUT / "firmware/joints", "J"),
+]
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 FUNCTION = re.compile(
     r"^(?!else |return )[a-z][\w *]*?(\w+)\(([^{};]*?)\)(?: *;|\n\{)", re.MULTILINE
@@ -15,27 +18,36 @@ FUNCTION = re.compile(
 PARAMETERS_MAX = 5
 
 
-def test_code_and_equations_page_name_the_same_tags_once():
-    documented = TAG.findall((CHECKOUT / "docs/equations.md").read_text())
-    used = {tag for source in CORE.rglob("*.[ch]") for tag in TAG.findall(source.read_text())}
+def tags_in(text: str, letter: str) -> list[str]:
+    return re.findall(rf"\[{letter}\d+\]", text)
+
+
+@pytest.mark.parametrize(("page", "library", "letter"), LIBRARIES)
+def test_code_and_page_name_the_same_tags_once(page, library, letter):
+    documented = tags_in((CHECKOUT / page).read_text(), letter)
+    sources = library.rglob("*.[ch]")
+    used = {tag for source in sources for tag in tags_in(source.read_text(), letter)}
     assert sorted(documented) == sorted(set(documented))
     assert set(documented) == used
 
 
-def test_each_equation_s_tag_stands_where_it_is_computed():
+@pytest.mark.parametrize(("page", "library", "letter"), LIBRARIES)
+def test_each_equation_s_tag_stands_where_it_is_computed(page, library, letter):
     """In a source, not only at a declaration or a field."""
-    documented = set(TAG.findall((CHECKOUT / "docs/equations.md").read_text()))
-    computed = {tag for source in CORE.rglob("*.c") for tag in TAG.findall(source.read_text())}
+    documented = set(tags_in((CHECKOUT / page).read_text(), letter))
+    sources = library.rglob("*.c")
+    computed = {tag for source in sources for tag in tags_in(source.read_text(), letter)}
     assert documented == computed
 
 
-def test_no_function_of_the_core_takes_more_than_five_parameters():
+@pytest.mark.parametrize(("library", "least"), [("core", 200), ("joints", 50)])
+def test_no_function_takes_more_than_five_parameters(library, least):
     counts = {
         f"{source.name} {name}": parameters.count(",") + 1
-        for source in CORE.rglob("*.[ch]")
+        for source in (CHECKOUT / "firmware" / library).rglob("*.[ch]")
         for name, parameters in FUNCTION.findall(COMMENT.sub("", source.read_text()))
     }
-    assert len(counts) > 200
+    assert len(counts) > least
     assert {name: count for name, count in counts.items() if count > PARAMETERS_MAX} == {}
 
 

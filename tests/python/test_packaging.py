@@ -81,12 +81,12 @@ def walk(tmp_path_factory) -> str:
     return printed
 
 
-def test_core_of_one_file_exports_its_interface_alone():
-    listing = run(
-        cached("CMAKE_NM"), "-g", "--defined-only", paths.built("lib/libsaddlewalk_core.a")
-    )
+@pytest.mark.parametrize("library", ["core", "joints"])
+def test_one_file_exports_its_interface_alone(library):
+    archive = paths.built(f"lib/libsaddlewalk_{library}.a")
+    listing = run(cached("CMAKE_NM"), "-g", "--defined-only", archive)
     exported = {line.split()[2] for line in listing.stdout.splitlines() if " T " in line}
-    assert exported == runpy.run_path(str(CHECKOUT / "tools/amalgamate.py"))["interface"]()
+    assert exported == runpy.run_path(str(CHECKOUT / "tools/amalgamate.py"))["interface"](library)
 
 
 def test_two_modules_with_one_name_are_rejected_in_one_file(tmp_path):

@@ -1,0 +1,14 @@
+#include "kinematics/chain.h"
+
+#include <saddlewalk/joints.h>
+
+void saddle_forward(const saddle_legs_t *legs, const saddle_trunk_t *trunk,
+                    const saddle_joints_t *joints, saddle_whole_body_t *posture)
+{
+    saddle_chain_t chain[2];
+    for (unsigned side = 0; side < 2; side++) {
+        saddle_chain(legs, trunk, joints, (saddle_side_t)side, &chain[side]);
+        posture->foot[side] = chain[side].foot;
+    }
+    posture->com = saddle_com_of(legs, trunk, chain);
+}

@@ -1,0 +1,52 @@
+"""The C library of the joints in this process: segments of a body, joint angles and back."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from saddlewalk.core import ffi, library
+from saddlewalk.errors import UserError
+
+
+def fields() -> dict[str, Any]:
+    """Every field of saddle_legs_t: its saddle_config_field_t, with place and accepted range."""
+    found: dict[str, Any] = {}
+    while (field := library().saddle_legs_field(len(found))) != ffi().NULL:
+        found[ffi().string(field.name).decode()] = field
+    return found
+
+
+def legs(height_m: float, mass_kg: float, measured: Mapping[str, float] | None = None) -> Any:
+    """The saddle_legs_t * of a body, with what was measured of it in the place of the default.
+
+    Raises UserError for a field that there is not and for a value that is not accepted.
+    """
+    result = ffi().new("saddle_legs_t *", library().saddle_legs_default(height_m, mass_kg))
+    known = fields()
+    for name, value in (measured or {}).items():
+        if name not in known:
+            raise UserError(f"{name} is no field of the legs; they have {', '.join(known)}")
+        ffi().cast("float *", ffi().cast("char *", result) + known[name].offset)[0] = value
+    bad = library().saddle_legs_check(result)
+    if bad != ffi().NULL:
+        name = ffi().string(bad).decode()
+        value = ffi().cast("float *", ffi().cast("char *", result) + known[name].offset)[0]
+        low, high = known[name].min, known[name].max
+        if low <= value <= high:
+            raise UserError(f"{name} = {value:g} does not fit the other fields of the legs")
+        raise UserError(f"{name} = {value:g} must be in {low:g} to {high:g}")
+    return result
+
+
+def inverse(body: Any, trunk: Any, feet: Any) -> tuple[Any, Any]:
+    """saddle_inverse(): the saddle_joints_t * of a saddle_trunk_t * and two saddle_foot_t, and what
+    had to give way, a saddle_reach_t.
+    """
+    joints = ffi().new("saddle_joints_t *")
+    return joints, library().saddle_inverse(body, trunk, feet, joints)
+
+
+def forward(body: Any, trunk: Any, joints: Any) -> Any:
+    """saddle_forward(): the saddle_whole_body_t * of a saddle_trunk_t * and a saddle_joints_t *."""
+    posture = ffi().new("saddle_whole_body_t *")
+    library().saddle_forward(body, trunk, joints, posture)
+    return posture
