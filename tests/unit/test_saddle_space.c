@@ -154,6 +154,9 @@ static void test_margin_equals_brute_force_for_random_postures(void)
         const double core = (double)saddle_bos_margin_m(&bos, point);
         worst = fmax(worst, fabs(core - twin_margin(&twin, point)));
         TEST_ASSERT_TRUE(core == core);
+        if (fabs(core) > MARGIN_TOLERANCE) { /* nearer to the border both are rounded */
+            TEST_ASSERT_EQUAL(core > 0.0, saddle_bos_contains(&bos, point));
+        }
     }
     TEST_ASSERT_DOUBLE_WITHIN(MARGIN_TOLERANCE, 0.0, worst);
 }
@@ -250,6 +253,7 @@ static void test_feet_within_a_millimetre_are_undefined(void)
     TEST_ASSERT_FALSE(bos.defined);
     ASSERT_SAME_FLOAT(0.0f, bos.radius_m);
     ASSERT_SAME_FLOAT(0.0f, saddle_bos_margin_m(&bos, together[0]));
+    TEST_ASSERT_FALSE(saddle_bos_contains(&bos, together[0]));
     for (int k = 0; k < SADDLE_BOS_VERTICES; k++) {
         TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, vertices[k].x);
         TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, vertices[k].y);

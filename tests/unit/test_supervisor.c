@@ -34,7 +34,7 @@ static saddle_scores_t score(const saddle_posture_t *posture)
 {
     saddle_scores_t scored;
     memset(&scored, 0, sizeof scored);
-    saddle_score_posture(model_of(&config), posture, &scored);
+    (void)saddle_score_posture(model_of(&config), posture, &scored);
     return scored;
 }
 
@@ -297,7 +297,7 @@ static void test_validity_follows_from_what_is_known(void)
         const bool speed = (known & SADDLE_KNOWN_SPEED) != 0u;
         const bool half_step = (known & SADDLE_KNOWN_HALF_STEP) != 0u;
         const saddle_posture_t posture = {
-            .com_velocity_m_s = {velocity ? 1.2f : NAN, velocity ? 0.0f : NAN},
+            .com.velocity_m_s = {velocity ? 1.2f : NAN, velocity ? 0.0f : NAN},
             .cop_m = {{feet ? 0.3f : NAN, feet ? 0.05f : NAN},
                       {feet ? -0.3f : NAN, feet ? -0.05f : NAN}},
             .v_comp_m_s = speed ? 1.2f : NAN,
@@ -349,8 +349,8 @@ static void test_can_stop_is_the_energy_within_the_ankles_work(void)
         const double excess = twin_kinetic(velocity) + twin_potential(left, right, com) -
                               twin_potential(left, right, twin_exit(&base, com, velocity));
         const saddle_posture_t posture = {
-            .com_m = {(float)com.x, (float)com.y},
-            .com_velocity_m_s = {(float)velocity.x, (float)velocity.y},
+            .com.com_m = {(float)com.x, (float)com.y},
+            .com.velocity_m_s = {(float)velocity.x, (float)velocity.y},
             .cop_m = {{0.0f, 0.11f}, {0.0f, -0.11f}},
             .known = (uint32_t)SADDLE_KNOWN_FEET | (uint32_t)SADDLE_KNOWN_VELOCITY,
         };
@@ -371,7 +371,7 @@ static void test_twice_the_ankles_work_stops_twice_the_energy(void)
         .cop_m = {{0.0f, 0.11f}, {0.0f, -0.11f}},
         .known = (uint32_t)SADDLE_KNOWN_FEET | (uint32_t)SADDLE_KNOWN_VELOCITY,
     };
-    posture.com_velocity_m_s.x = 0.5f; /* 7.9 J and 3 J on the way down */
+    posture.com.velocity_m_s.x = 0.5f; /* 7.9 J and 3 J on the way down */
     TEST_ASSERT_FALSE(score(&posture).can_stop);
     config.ankle_work_factor = 2.0f;
     TEST_ASSERT_TRUE(score(&posture).can_stop);
@@ -391,8 +391,8 @@ static void test_paper_s_verdict_needs_all_three_scores_or_the_stop(void)
     };
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         const saddle_posture_t posture = {
-            .com_m = {0.2f, table[i].com_y + 0.5f}, /* any frame will do */
-            .com_velocity_m_s = {table[i].speed_x, 0.0f},
+            .com.com_m = {0.2f, table[i].com_y + 0.5f}, /* any frame will do */
+            .com.velocity_m_s = {table[i].speed_x, 0.0f},
             .cop_m = {{0.5f, 0.55f}, {-0.1f, 0.45f}},
             .v_comp_m_s = 1.2f,
             .half_step_m = table[i].half_step,
@@ -409,7 +409,7 @@ static void test_paper_s_verdict_needs_the_scores_to_be_known(void)
 {
     const uint32_t missing[] = {SADDLE_KNOWN_FEET, SADDLE_KNOWN_SPEED, SADDLE_KNOWN_HALF_STEP};
     saddle_posture_t posture = {
-        .com_velocity_m_s = {1.2f, 0.0f},
+        .com.velocity_m_s = {1.2f, 0.0f},
         .cop_m = {{0.3f, 0.05f}, {-0.3f, -0.05f}},
         .v_comp_m_s = 1.2f,
         .half_step_m = 0.35f,

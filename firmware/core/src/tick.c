@@ -247,10 +247,10 @@ saddle_status_t saddle_score_plan(const saddle_context_t *context, const saddle_
         return SADDLE_ERROR_UNINITIALISED;
     }
     saddle_posture_t posture;
-    posture.com_m.x = plan->com_m.x;
-    posture.com_m.y = plan->com_m.y;
-    posture.com_velocity_m_s.x = plan->com_velocity_m_s.x;
-    posture.com_velocity_m_s.y = plan->com_velocity_m_s.y;
+    posture.com.com_m.x = plan->com_m.x;
+    posture.com.com_m.y = plan->com_m.y;
+    posture.com.velocity_m_s.x = plan->com_velocity_m_s.x;
+    posture.com.velocity_m_s.y = plan->com_velocity_m_s.y;
     for (int side = 0; side < 2; side++) {
         posture.cop_m[side].x = plan->foot_m[side].x;
         posture.cop_m[side].y = plan->foot_m[side].y;

@@ -166,8 +166,8 @@ def _claims(posture: Posture, states: np.ndarray, config: Any) -> dict[str, np.n
         cop.x, cop.y = x_m, y_m
     claimed = {claim: np.zeros(len(states), dtype=bool) for claim in CLAIMS}
     for index, (x_m, y_m, vx_m_s, vy_m_s) in enumerate(states.tolist()):
-        seen.com_m.x, seen.com_m.y = x_m, y_m
-        seen.com_velocity_m_s.x, seen.com_velocity_m_s.y = vx_m_s, vy_m_s
+        seen.com.com_m.x, seen.com.com_m.y = x_m, y_m
+        seen.com.velocity_m_s.x, seen.com.velocity_m_s.y = vx_m_s, vy_m_s
         core.saddle_score_posture(model, seen, scores)
         claimed["bos"][index] = scores.mos_com_m >= 0
         claimed["can_stop"][index] = scores.can_stop

@@ -14,12 +14,6 @@
 #define SPEED_MIN_M_S 0.01f
 #define SPEED_MAX_M_S 3.9f
 
-/* A step that the wearer is compared with, and how far from its stance foot the CoM is by now. */
-typedef struct {
-    saddle_step_t step;
-    float x_m;
-} nominal_t;
-
 static saddle_vec2_t xcom_of(const saddle_model_t *model, const saddle_com_state_t *state)
 {
     return saddle_xcom_m(state->com_m, state->velocity_m_s, model->body.natural_frequency_rad_s);
@@ -45,15 +39,11 @@ void saddle_compare_nothing(saddle_verdict_t *verdict)
 static void compare_state(const saddle_model_t *model, const saddle_wearer_t *wearer,
                           const saddle_com_state_t *planned, saddle_verdict_t *verdict)
 {
-    const saddle_posture_t *posture = wearer->posture;
-    const saddle_scores_t *scores = wearer->scores;
-    const saddle_com_state_t measured = {posture->com_m, posture->com_velocity_m_s};
-    const saddle_support_t support = {posture->cop_m, &scores->bos, wearer->at_com};
-    const bool reached =
-        saddle_excess_track_j(model, &support, &measured, planned, &verdict->excess_track_j);
+    const bool reached = saddle_excess_track_j(model, wearer->support, &wearer->posture->com,
+                                               planned, &verdict->excess_track_j);
     verdict->compared = true;
     verdict->on_track = reached && model->body.ankle_work_j >= verdict->excess_track_j;
-    verdict->xcom_deviation_m = saddle_vec2_sub(scores->xcom_m, xcom_of(model, planned));
+    verdict->xcom_deviation_m = saddle_vec2_sub(wearer->scores->xcom_m, xcom_of(model, planned));
 }
 
 /* trailing_m: the other foot, from the stance foot. */
@@ -69,8 +59,10 @@ static saddle_vec2_t least_deviation_m(const saddle_model_t *model, saddle_vec2_
 
 /* Both feet are to stand: no heel strike is expected, and the foot on the side to which the XCoM
  * departs can make a recovery step. from_middle: the planned CoM, from midway between the feet. */
-static void compare_standing(const saddle_model_t *model, const saddle_wearer_t *wearer,
-                             const saddle_com_state_t *from_middle, saddle_verdict_t *verdict)
+static SADDLE_NOINLINE void compare_standing(const saddle_model_t *model,
+                                             const saddle_wearer_t *wearer,
+                                             const saddle_com_state_t *from_middle,
+                                             saddle_verdict_t *verdict)
 {
     const saddle_posture_t *posture = wearer->posture;
     const saddle_scores_t *scores = wearer->scores;
@@ -148,20 +140,21 @@ static void predict(const saddle_model_t *model, const saddle_expectation_t *exp
 
 /* Against a step, in the phase where its CoM is x_m from the stance foot. */
 static void compare_step(const saddle_model_t *model, const saddle_wearer_t *wearer,
-                         const nominal_t *nominal, saddle_verdict_t *verdict)
+                         const saddle_step_t *step, float x_m, saddle_verdict_t *verdict)
 {
     const saddle_posture_t *posture = wearer->posture;
-    const saddle_side_t stance = nominal->step.stance;
+    const saddle_side_t stance = step->stance;
     const saddle_side_t other = saddle_other_side(stance);
-    const saddle_expectation_t expected = saddle_expect(model, &nominal->step, nominal->x_m);
+    saddle_expectation_t expected = saddle_expect(model, step, x_m);
     const saddle_vec2_t stance_m = posture->cop_m[stance];
     const saddle_vec2_t trailing_m = saddle_vec2_sub(posture->cop_m[other], stance_m);
-    const saddle_com_state_t planned = {saddle_vec2_add(stance_m, expected.now.com_m),
-                                        expected.now.velocity_m_s};
     const saddle_growth_t growth =
         saddle_growth(model, expected.time_s, wearer->measurement->foot[other].contact);
-    compare_state(model, wearer, &planned, verdict);
-    predict(model, &expected, saddle_vec2_sub(posture->com_m, planned.com_m), &growth, verdict);
+    saddle_com_state_t *planned = &expected.now;
+    planned->com_m = saddle_vec2_add(stance_m, planned->com_m);
+    compare_state(model, wearer, planned, verdict);
+    predict(model, &expected, saddle_vec2_sub(posture->com.com_m, planned->com_m), &growth,
+            verdict);
     const saddle_recovery_target_t target = {
         .stance = stance,
         .landing_m = expected.landing_m,
@@ -177,18 +170,16 @@ bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
 {
     const saddle_step_tracker_t *steps = wearer->steps;
     if (matches_planned_step(wearer, intent)) {
-        const nominal_t planned = {intent->step, intent->com.com_m.x};
-        compare_step(model, wearer, &planned, verdict);
+        compare_step(model, wearer, &intent->step, intent->com.com_m.x, verdict);
         return steps->stance == (uint8_t)intent->step.stance;
     }
     const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
     const float speed_m_s = intent->leads ? intent->step.speed_m_s : steps->v_comp_m_s;
     if (walks && saddle_in_range(speed_m_s, SPEED_MIN_M_S, SPEED_MAX_M_S)) {
         const saddle_posture_t *posture = wearer->posture;
-        nominal_t own;
-        own.step = nominal_step(model, steps, speed_m_s);
-        own.x_m = posture->com_m.x - posture->cop_m[own.step.stance].x;
-        compare_step(model, wearer, &own, verdict);
+        const saddle_step_t own = nominal_step(model, steps, speed_m_s);
+        const float x_m = posture->com.com_m.x - posture->cop_m[own.stance].x;
+        compare_step(model, wearer, &own, x_m, verdict);
     } else if (!walks && (intent->leads || steps->stands)) {
         compare_standing(model, wearer, &intent->com, verdict);
     }

@@ -24,7 +24,7 @@ typedef struct {
     const saddle_measurement_t *measurement;
     const saddle_posture_t *posture; /**< of that measurement */
     const saddle_scores_t *scores;   /**< of that posture */
-    saddle_surface_t at_com;         /**< of that posture */
+    const saddle_support_t *support; /**< of that posture */
 } saddle_wearer_t;
 
 /** Clear what a comparison writes. */

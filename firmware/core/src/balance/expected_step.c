@@ -51,8 +51,8 @@ saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_ste
                            ? state_at_saddle(&ahead, step->speed_m_s)
                            : state_at(&ahead, step->speed_m_s, half_ahead_m);
     expected.landing_m = step->landing_m;
-    expected.time_s = saddle_clamp((half_ahead_m - phase_m) / step->speed_m_s, 0.0f,
-                                   model->config.prediction_horizon_s);
+    expected.time_s = saddle_smaller((half_ahead_m - phase_m) / step->speed_m_s,
+                                     model->config.prediction_horizon_s);
     expected.step_time_s = (half_ahead_m + step->half_behind_m) / step->speed_m_s;
     return expected;
 }

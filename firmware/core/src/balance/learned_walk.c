@@ -51,7 +51,7 @@ static void climb(saddle_learning_t *learning, float height_m)
     const float since_s = learning->same_height_s;
     const float risen_m = height_m - learning->last_height_m;
     if (since_s > 0.0f && (risen_m < 0.0f || risen_m > 0.0f)) {
-        const float share = saddle_clamp(since_s / FIRST_S, 0.0f, 1.0f);
+        const float share = saddle_smaller(since_s / FIRST_S, 1.0f);
         learning->last_climb_m_s = learning->climb_m_s;
         learning->climb_m_s += share * (risen_m / since_s - learning->climb_m_s);
         learning->last_height_m = height_m;
@@ -88,8 +88,8 @@ void saddle_learning_begin(saddle_learning_t *learning)
 /* The plain mean at first, then one that forgets. */
 static float share_of_new(float *learned_s, float dt_s, float forgetting_s)
 {
-    *learned_s = saddle_clamp(*learned_s + dt_s, 0.0f, forgetting_s);
-    return saddle_clamp(dt_s / *learned_s, 0.0f, 1.0f);
+    *learned_s = saddle_smaller(*learned_s + dt_s, forgetting_s);
+    return saddle_smaller(dt_s / *learned_s, 1.0f);
 }
 
 /* [E32] */

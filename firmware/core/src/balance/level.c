@@ -87,36 +87,40 @@ static decision_t decide(const saddle_verdict_t *verdict)
     return decision;
 }
 
-static void count(uint8_t *ticks, bool goes_on)
+static void count_ticks(saddle_level_state_t *state, uint8_t level)
 {
-    *ticks = (uint8_t)(goes_on ? (*ticks < UINT8_MAX ? *ticks + 1u : UINT8_MAX) : 0u);
-}
-
-static void count_levels(saddle_level_state_t *state, uint8_t level)
-{
-    const bool known = level != (uint8_t)SADDLE_LEVEL_UNKNOWN;
-    for (uint8_t i = SADDLE_LEVEL_STABLE; i <= (uint8_t)SADDLE_LEVEL_UNSTABLE; i++) {
-        count(&state->at_least_ticks[i], known && level >= i);
-        count(&state->at_most_ticks[i], known && level <= i);
-    }
-}
-
-/* The worst level that has been reached or passed for long enough; the best one likewise if that is
- * better than the announced one. The announced one if neither has. */
-static uint8_t level_held(const saddle_level_state_t *state, const saddle_model_t *model)
-{
-    const uint8_t announced = state->level;
-    for (uint8_t i = SADDLE_LEVEL_UNSTABLE; i > announced && i > 0u; i--) {
-        if ((float)state->at_least_ticks[i] >= model->config.level_hold_ticks) {
-            return i;
+    for (int i = 0; i <= (int)SADDLE_LEVEL_UNSTABLE; i++) {
+        if (state->ticks_since[i] < UINT8_MAX) {
+            state->ticks_since[i]++;
         }
     }
-    for (uint8_t i = SADDLE_LEVEL_STABLE; i < announced; i++) {
-        if ((float)state->at_most_ticks[i] >= model->config.level_hold_ticks) {
-            return i;
+    state->ticks_since[level] = 0;
+}
+
+/* Every level was known, and from `best` to `worst`, for long enough. */
+static bool held(const saddle_level_state_t *state, const saddle_model_t *model, uint8_t best,
+                 uint8_t worst)
+{
+    for (uint8_t i = 0; i <= (uint8_t)SADDLE_LEVEL_UNSTABLE; i++) {
+        if ((i < best || i > worst) &&
+            (float)state->ticks_since[i] < model->config.level_hold_ticks) {
+            return false;
         }
     }
-    return announced;
+    return true;
+}
+
+/* From the announced level as far towards this tick's as has held for long enough. */
+static uint8_t level_held(const saddle_level_state_t *state, const saddle_model_t *model,
+                          uint8_t level)
+{
+    while (level > state->level && !held(state, model, level, (uint8_t)SADDLE_LEVEL_UNSTABLE)) {
+        level--;
+    }
+    while (level < state->level && !held(state, model, (uint8_t)SADDLE_LEVEL_STABLE, level)) {
+        level++;
+    }
+    return level;
 }
 
 /* Why the announced level is that, whatever this tick's own reason is. */
@@ -135,15 +139,16 @@ static saddle_reason_t announced_reason(const saddle_level_state_t *state, decis
  * unknown at once. */
 static void announce(saddle_level_state_t *state, const saddle_model_t *model, decision_t decision)
 {
-    count_levels(state, (uint8_t)decision.level);
+    count_ticks(state, (uint8_t)decision.level);
     if (decision.level == SADDLE_LEVEL_CAUTION) {
         state->caution_reason = (uint8_t)decision.reason;
     }
     if (decision.level == SADDLE_LEVEL_UNSTABLE) {
         state->unstable_reason = (uint8_t)decision.reason;
     }
-    state->level = decision.level == SADDLE_LEVEL_UNKNOWN ? (uint8_t)SADDLE_LEVEL_UNKNOWN
-                                                          : level_held(state, model);
+    state->level = decision.level == SADDLE_LEVEL_UNKNOWN
+                       ? (uint8_t)SADDLE_LEVEL_UNKNOWN
+                       : level_held(state, model, (uint8_t)decision.level);
     state->reason = (uint8_t)announced_reason(state, decision);
 }
 
@@ -164,7 +169,6 @@ void saddle_level_reset(saddle_level_state_t *state)
 {
     state->level = (uint8_t)SADDLE_LEVEL_UNKNOWN;
     for (int i = 0; i <= (int)SADDLE_LEVEL_UNSTABLE; i++) {
-        state->at_least_ticks[i] = 0;
-        state->at_most_ticks[i] = 0;
+        state->ticks_since[i] = 0;
     }
 }

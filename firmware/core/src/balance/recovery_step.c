@@ -43,7 +43,7 @@ static bool stops_at(const saddle_model_t *model, saddle_vec2_t xcom_m, saddle_v
 {
     const saddle_vec2_t cop_m[2] = {{0.0f, 0.0f}, landing_m};
     const saddle_bos_t bos = saddle_bos(cop_m, model->config.cop_range_m, model->config.bos_factor);
-    return bos.defined && saddle_bos_margin_m(&bos, xcom_m) >= 0.0f;
+    return saddle_bos_contains(&bos, xcom_m);
 }
 
 /* [E30] */

@@ -94,6 +94,11 @@ static bool is_inside(const saddle_bos_t *bos, saddle_vec2_t place_m)
            saddle_vec2_dot(place_m, place_m) <= bos->radius_m * bos->radius_m;
 }
 
+bool saddle_bos_contains(const saddle_bos_t *bos, saddle_vec2_t point_m)
+{
+    return bos->defined && is_inside(bos, to_saddle(bos, saddle_vec2_sub(point_m, bos->centre_m)));
+}
+
 /* How far the border is from an inner place along a unit direction, both in saddle space. */
 static float distance_out_m(const saddle_bos_t *bos, saddle_vec2_t place_m, saddle_vec2_t direction)
 {

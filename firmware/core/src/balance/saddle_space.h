@@ -16,6 +16,9 @@ saddle_bos_t saddle_bos(const saddle_vec2_t cop_m[2], float half_depth_m, float 
 /** [E17] Signed Euclidean distance to the border, positive inside. 0 if the BoS is undefined. */
 float saddle_bos_margin_m(const saddle_bos_t *bos, saddle_vec2_t point_m);
 
+/** Whether a point lies in the BoS, border included; false if the BoS is undefined. */
+bool saddle_bos_contains(const saddle_bos_t *bos, saddle_vec2_t point_m);
+
 /** The BoS of feet that are together or not known. */
 saddle_bos_t saddle_bos_undefined(void);
 

@@ -1,6 +1,5 @@
 #include "balance/scores.h"
 
-#include "balance/energy.h"
 #include "balance/stability_scores.h"
 #include "model/gait_model.h"
 
@@ -23,32 +22,30 @@ static void score_steps(const saddle_model_t *model, const saddle_posture_t *pos
 
 /* [E27] */
 static void score_energy(const saddle_model_t *model, const saddle_posture_t *posture,
-                         const saddle_surface_t *at_com, saddle_scores_t *scores)
+                         const saddle_support_t *support, saddle_scores_t *scores)
 {
-    const saddle_com_state_t state = {posture->com_m, posture->com_velocity_m_s};
-    const saddle_support_t support = {posture->cop_m, &scores->bos, *at_com};
-    if (saddle_excess_stop_j(model, &support, &state, &scores->excess_stop_j)) {
+    if (saddle_excess_stop_j(model, support, &posture->com, &scores->excess_stop_j)) {
         scores->can_stop = model->body.ankle_work_j >= scores->excess_stop_j;
         scores->valid |= (uint32_t)SADDLE_VALID_STOP;
     }
 }
 
 static void score_space(const saddle_model_t *model, const saddle_posture_t *posture,
-                        const saddle_surface_t *at_com, saddle_scores_t *scores)
+                        const saddle_support_t *support, saddle_scores_t *scores)
 {
     scores->bos = saddle_bos(posture->cop_m, model->config.cop_range_m, model->config.bos_factor);
     if (!scores->bos.defined) {
         return;
     }
-    scores->mos_com_m = saddle_bos_margin_m(&scores->bos, posture->com_m);
+    scores->mos_com_m = saddle_bos_margin_m(&scores->bos, posture->com.com_m);
     scores->valid |= (uint32_t)SADDLE_VALID_MOS_COM;
     if ((posture->known & SADDLE_KNOWN_VELOCITY) != 0u) {
         scores->mos_xcom_m = saddle_bos_margin_m(&scores->bos, scores->xcom_m);
         scores->valid |= (uint32_t)SADDLE_VALID_MOS_XCOM;
-        score_energy(model, posture, at_com, scores);
+        score_energy(model, posture, support, scores);
     }
-    if (at_com->reached) {
-        scores->gravity_n = saddle_gravity_n(at_com, model->config.body_mass_kg);
+    if (support->at_com.reached) {
+        scores->gravity_n = saddle_gravity_n(&support->at_com, model->config.body_mass_kg);
         scores->valid |= (uint32_t)SADDLE_VALID_GRAVITY;
     }
 }
@@ -71,7 +68,7 @@ static void score_walk(const saddle_model_t *model, const saddle_posture_t *post
     if ((known & SADDLE_KNOWN_FEET) != 0u) {
         const float midline_m =
             0.5f * (posture->cop_m[SADDLE_LEFT].y + posture->cop_m[SADDLE_RIGHT].y);
-        scores->s_sw = saddle_width_score(posture->com_m.y - midline_m,
+        scores->s_sw = saddle_width_score(posture->com.com_m.y - midline_m,
                                           saddle_step_width_m(model, posture->v_comp_m_s));
         scores->valid |= (uint32_t)SADDLE_VALID_S_SW;
     }
@@ -95,25 +92,24 @@ static void score_nothing(saddle_scores_t *scores)
     scores->bos = saddle_bos_undefined();
 }
 
-saddle_surface_t saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
+saddle_support_t saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
                                       saddle_scores_t *scores)
 {
-    saddle_surface_t at_com;
-    at_com.reached = false;
+    saddle_support_t support = {.cop_m = posture->cop_m, .bos = &scores->bos};
     score_nothing(scores);
     if ((posture->known & SADDLE_KNOWN_VELOCITY) != 0u) {
-        scores->xcom_m = saddle_xcom_m(posture->com_m, posture->com_velocity_m_s,
+        scores->xcom_m = saddle_xcom_m(posture->com.com_m, posture->com.velocity_m_s,
                                        model->body.natural_frequency_rad_s);
     }
     if ((posture->known & SADDLE_KNOWN_SPEED) != 0u) {
         score_walk(model, posture, scores);
     }
     if ((posture->known & SADDLE_KNOWN_FEET) != 0u) {
-        at_com = saddle_surface(posture->cop_m, posture->com_m, model->body.pendulum_m);
-        score_space(model, posture, &at_com, scores);
+        support.at_com = saddle_surface(posture->cop_m, posture->com.com_m, model->body.pendulum_m);
+        score_space(model, posture, &support, scores);
     }
     scores->paper_stable = scores->can_stop || stable_step(scores);
-    return at_com;
+    return support;
 }
 
 uint32_t saddle_score_faults(uint32_t known, const saddle_scores_t *scores)

@@ -2,6 +2,7 @@
 #ifndef SADDLEWALK_SCORES_H
 #define SADDLEWALK_SCORES_H
 
+#include "balance/energy.h"
 #include "balance/saddle_space.h"
 
 #include <saddlewalk/private/context.h>
@@ -16,15 +17,16 @@ typedef enum {
 
 /** A posture to score, in any frame with x forward and y left. */
 typedef struct {
-    saddle_vec2_t com_m, com_velocity_m_s, cop_m[2];
+    saddle_com_state_t com;
+    saddle_vec2_t cop_m[2];
     float v_comp_m_s;  /**< walking speed that the scores refer to */
     float half_step_m; /**< half the AP distance of the CoPs at the last heel strike */
     uint32_t known;    /**< saddle_known_t bits; the numbers of the others are not read */
 } saddle_posture_t;
 
-/** Score a posture. Whatever is not known is not scored. Writes all of *scores. Returns the energy
- *  surface at the CoM, not reached if the feet are not known. */
-saddle_surface_t saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
+/** Score a posture. Whatever is not known is not scored. Writes all of *scores. Returns what carries the
+ *  CoM, not reached if the feet are not known; it points to the posture's feet and the scores' BoS. */
+saddle_support_t saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
                                       saddle_scores_t *scores);
 
 /** Whether all of these saddle_valid_t results are there. */

@@ -21,6 +21,13 @@ static uint32_t missing(const saddle_supervisor_t *supervisor, uint32_t faults)
     return supervisor->learning.begun ? faults & ~evidence : faults;
 }
 
+/* CoM and feet. */
+static bool is_measured(uint32_t known)
+{
+    const uint32_t all = (uint32_t)SADDLE_KNOWN_FEET | (uint32_t)SADDLE_KNOWN_VELOCITY;
+    return (known & all) == all;
+}
+
 static void no_margin(saddle_verdict_t *verdict)
 {
     verdict->margin_known = false;
@@ -70,58 +77,89 @@ void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s)
     saddle_level_reset(&supervisor->level);
 }
 
-uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_model_t *model,
-                                  const saddle_sensed_t *sensed, const saddle_intent_t *intent,
-                                  saddle_output_t *output)
+/* What is known of a wearer with these faults. */
+static uint32_t known_of(const saddle_supervisor_t *supervisor, const saddle_intent_t *intent,
+                         uint32_t faults)
 {
-    const saddle_measurement_t *measurement = sensed->measurement;
-    const uint32_t faults = sensed->faults;
-    const float dt_s = sensed->dt_s;
-    saddle_scores_t *scores = &output->scores;
-    saddle_verdict_t *verdict = &output->verdict;
-    saddle_step_tracker_t *steps = &supervisor->steps;
-    saddle_track_steps(steps, model, measurement, faults, dt_s);
+    const saddle_step_tracker_t *steps = &supervisor->steps;
     const uint32_t missing_inputs = missing(supervisor, faults);
-    const bool feet_known = (missing_inputs & SADDLE_FAULTS_FEET) == 0u;
-    const bool com_known = (missing_inputs & SADDLE_FAULTS_COM) == 0u;
     const bool is_to_stand = intent->leads && !intent->walking;
-    const bool speed_known = !is_to_stand && (steps->v_comp_known || intent->step.speed_m_s > 0.0f);
-    const bool half_step_known = !is_to_stand && feet_known && com_known && steps->half_step_known;
+    uint32_t known = 0;
+    if ((missing_inputs & SADDLE_FAULTS_FEET) == 0u) {
+        known |= (uint32_t)SADDLE_KNOWN_FEET;
+    }
+    if ((missing_inputs & SADDLE_FAULTS_COM) == 0u) {
+        known |= (uint32_t)SADDLE_KNOWN_VELOCITY;
+    }
+    if (!is_to_stand && (steps->v_comp_known || intent->step.speed_m_s > 0.0f)) {
+        known |= (uint32_t)SADDLE_KNOWN_SPEED;
+    }
+    if (!is_to_stand && is_measured(known) && steps->half_step_known) {
+        known |= (uint32_t)SADDLE_KNOWN_HALF_STEP;
+    }
+    return known;
+}
+
+static saddle_posture_t posture_of(const saddle_step_tracker_t *steps,
+                                   const saddle_measurement_t *measurement,
+                                   const saddle_intent_t *intent, uint32_t known)
+{
     saddle_posture_t posture;
-    posture.com_m.x = 0.0f;
-    posture.com_m.y = 0.0f;
-    posture.com_velocity_m_s = measurement->com.velocity_m_s;
+    posture.com.com_m.x = 0.0f;
+    posture.com.com_m.y = 0.0f;
+    posture.com.velocity_m_s = measurement->com.velocity_m_s;
     posture.cop_m[SADDLE_LEFT] = measurement->foot[SADDLE_LEFT].cop_m;
     posture.cop_m[SADDLE_RIGHT] = measurement->foot[SADDLE_RIGHT].cop_m;
     posture.v_comp_m_s = steps->v_comp_known ? steps->v_comp_m_s : intent->step.speed_m_s;
     posture.half_step_m = steps->half_step_m;
-    posture.known = (feet_known ? (uint32_t)SADDLE_KNOWN_FEET : 0u) |
-                    (com_known ? (uint32_t)SADDLE_KNOWN_VELOCITY : 0u) |
-                    (speed_known ? (uint32_t)SADDLE_KNOWN_SPEED : 0u) |
-                    (half_step_known ? (uint32_t)SADDLE_KNOWN_HALF_STEP : 0u);
-    const saddle_surface_t at_com = saddle_score_posture(model, &posture, scores);
-    const uint32_t all_faults = faults | saddle_score_faults(posture.known, scores);
+    posture.known = known;
+    return posture;
+}
+
+/* The margin of what is known, and what it teaches. */
+static SADDLE_NOINLINE void follow_margin(saddle_supervisor_t *supervisor,
+                                          const saddle_model_t *model,
+                                          const saddle_sensed_t *sensed, bool on_plan,
+                                          saddle_verdict_t *verdict)
+{
+    const uint32_t missing_inputs = missing(supervisor, sensed->faults);
+    no_margin(verdict);
+    if ((missing_inputs & SADDLE_FAULTS_COM) != 0u) {
+        saddle_learning_gap(&supervisor->learning);
+        return;
+    }
+    saddle_learning_watch(&supervisor->learning, sensed->measurement, sensed->dt_s);
+    if ((missing_inputs & SADDLE_FAULTS_FEET) != 0u) {
+        return;
+    }
+    const float own =
+        measure_margin(model, &supervisor->learning, sensed->measurement, on_plan, verdict);
+    if ((sensed->faults & (uint32_t)SADDLE_FAULT_COM_LOW) == 0u) {
+        learn(supervisor, model, own, sensed->dt_s);
+    } else {
+        bound_margin(verdict, 0.0f);
+    }
+}
+
+uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_model_t *model,
+                                  const saddle_sensed_t *sensed, const saddle_intent_t *intent,
+                                  saddle_output_t *output)
+{
+    saddle_scores_t *scores = &output->scores;
+    saddle_verdict_t *verdict = &output->verdict;
+    saddle_step_tracker_t *steps = &supervisor->steps;
+    saddle_track_steps(steps, model, sensed->measurement, sensed->faults, sensed->dt_s);
+    const uint32_t known = known_of(supervisor, intent, sensed->faults);
+    const saddle_posture_t posture = posture_of(steps, sensed->measurement, intent, known);
+    const saddle_support_t support = saddle_score_posture(model, &posture, scores);
+    const uint32_t faults = sensed->faults | saddle_score_faults(known, scores);
     saddle_compare_nothing(verdict);
     bool on_plan = false;
-    if (com_known && feet_known && scores->bos.defined) {
-        const saddle_wearer_t wearer = {steps, measurement, &posture, scores, at_com};
+    if (is_measured(known) && scores->bos.defined) {
+        const saddle_wearer_t wearer = {steps, sensed->measurement, &posture, scores, &support};
         on_plan = saddle_compare(model, &wearer, intent, verdict);
     }
-    no_margin(verdict);
-    if (com_known) {
-        saddle_learning_watch(&supervisor->learning, measurement, dt_s);
-    } else {
-        saddle_learning_gap(&supervisor->learning);
-    }
-    if (com_known && feet_known) {
-        const float own =
-            measure_margin(model, &supervisor->learning, measurement, on_plan, verdict);
-        if ((faults & (uint32_t)SADDLE_FAULT_COM_LOW) == 0u) {
-            learn(supervisor, model, own, dt_s);
-        } else {
-            bound_margin(verdict, 0.0f);
-        }
-    }
-    saddle_level_update(&supervisor->level, model, all_faults, scores, verdict);
-    return all_faults;
+    follow_margin(supervisor, model, sensed, on_plan, verdict);
+    saddle_level_update(&supervisor->level, model, faults, scores, verdict);
+    return faults;
 }

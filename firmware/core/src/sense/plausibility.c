@@ -35,7 +35,7 @@ saddle_measurement_t saddle_no_measurement(void)
 
 static bool vec2_within(saddle_vec2_t v, float max)
 {
-    return saddle_in_range(v.x, -max, max) && saddle_in_range(v.y, -max, max);
+    return saddle_magnitude(v.x) <= max && saddle_magnitude(v.y) <= max;
 }
 
 static bool same(saddle_vec2_t a, saddle_vec2_t b)

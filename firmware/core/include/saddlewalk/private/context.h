@@ -193,11 +193,10 @@ typedef struct {
 } saddle_learning_t;
 
 typedef struct {
-    uint8_t level, reason;     /**< announced */
-    uint8_t caution_reason;    /**< of the last caution */
-    uint8_t unstable_reason;   /**< and of the last unstable tick */
-    uint8_t at_least_ticks[4]; /**< for how long the level has been this one or worse */
-    uint8_t at_most_ticks[4];  /**< and this one or better */
+    uint8_t level, reason;   /**< announced */
+    uint8_t caution_reason;  /**< of the last caution */
+    uint8_t unstable_reason; /**< and of the last unstable tick */
+    uint8_t ticks_since[4];  /**< since a tick had this level, at most 255 */
 } saddle_level_state_t;
 
 typedef struct {
