@@ -55,7 +55,7 @@ static void test_balance_coefficients(void)
                         range * range / pendulum,
                     body->ankle_work_j);
         assert_near(exp(frequency * horizon), body->horizon_growth);
-        assert_near(exp(frequency * fmax(horizon - 0.1, 0.0)), body->horizon_free_growth);
+        assert_near(1.0 - exp(-0.1 * frequency), body->trailing_share);
         assert_near(0.285 * (double)config.body_height_m, body->com_height_min_m);
     }
 }

@@ -62,12 +62,13 @@ saddle_growth_t saddle_growth(const saddle_model_t *model, float time_s, bool tr
 {
     const saddle_body_t *body = &model->body;
     const bool latest = time_s == model->config.prediction_horizon_s;
-    const float w = body->natural_frequency_rad_s;
-    saddle_growth_t growth = {.factor = latest ? body->horizon_growth : saddle_exp(w * time_s)};
+    saddle_growth_t growth = {
+        .factor =
+            latest ? body->horizon_growth : saddle_exp(body->natural_frequency_rad_s * time_s),
+    };
     if (trailing) {
-        const float free_s = time_s - saddle_smaller(time_s, SADDLE_TRAILING_S);
         growth.trailing =
-            growth.factor - (latest ? body->horizon_free_growth : saddle_exp(w * free_s));
+            saddle_smaller(growth.factor - 1.0f, growth.factor * body->trailing_share);
     }
     return growth;
 }

@@ -82,10 +82,8 @@ static void derive_balance(const saddle_config_t *config, saddle_body_t *body)
 {
     body->ankle_work_j = config->ankle_work_factor * config->body_mass_kg * SADDLE_GRAVITY_M_S2 *
                          config->cop_range_m * config->cop_range_m / body->pendulum_m;
-    const float carried_s = saddle_smaller(config->prediction_horizon_s, SADDLE_TRAILING_S);
     body->horizon_growth = saddle_exp(body->natural_frequency_rad_s * config->prediction_horizon_s);
-    body->horizon_free_growth =
-        saddle_exp(body->natural_frequency_rad_s * (config->prediction_horizon_s - carried_s));
+    body->trailing_share = 1.0f - saddle_exp(-body->natural_frequency_rad_s * SADDLE_TRAILING_S);
     body->com_height_min_m = KNEE_HEIGHT * config->body_height_m;
 }
 

@@ -26,8 +26,8 @@ typedef struct {
     float half_step_slope_s[2];    /**< of the step that each foot makes, [E4] */
     saddle_fixed_t half_step_intercept[2];
     float ankle_work_j;         /**< W_max, [E27] */
-    float horizon_growth;       /**< of a deviation within prediction_horizon_s, [E29], */
-    float horizon_free_growth;  /**< and of that once the trailing foot has lifted off */
+    float horizon_growth;       /**< of a deviation within prediction_horizon_s, [E29] */
+    float trailing_share;       /**< of any growth: what a trailing foot takes off at most */
     float com_height_min_m;     /**< a lower CoM is below the knees */
     float crawl_m_s;            /**< a stop goes on at no less until it brakes, */
     float braked_in_a_step_m_s; /**< and at no more: every step is long enough to brake from it */
