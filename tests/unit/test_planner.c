@@ -15,20 +15,21 @@ static saddle_body_t body;
 static saddle_planner_t planner;
 static saddle_plan_t plan;
 static saddle_command_t command;
-static saddle_feet_t feet;
+static saddle_measurement_t measured;
+static bool feet_known;
 
 static void stand(float speed_m_s)
 {
     body = model_of(&config)->body;
     saddle_planner_reset(&planner, model_of(&config));
     command = (saddle_command_t){SADDLE_COMMAND_WALK, speed_m_s, 0.17453293f};
-    feet = (saddle_feet_t){.known = false};
+    feet_known = false;
 }
 
 static uint32_t tick(uint32_t dt_us)
 {
-    const uint32_t limits =
-        saddle_planner_update(&planner, model_of(&config), &command, &feet, dt_us);
+    const uint32_t limits = saddle_planner_update(&planner, model_of(&config), &command,
+                                                  feet_known ? &measured : NULL, dt_us);
     return limits | saddle_plan_write(&planner, model_of(&config), &plan);
 }
 
@@ -520,8 +521,11 @@ static void test_start_stands_then_shifts_then_steps(void)
 
 static void measure(float left_x, float left_y, float right_x, float right_y)
 {
-    feet = (saddle_feet_t){
-        .known = true, .cop_m = {{left_x, left_y}, {right_x, right_y}}, .contact = {true, true}};
+    feet_known = true;
+    measured.foot[SADDLE_LEFT].cop_m = (saddle_vec2_t){left_x, left_y};
+    measured.foot[SADDLE_RIGHT].cop_m = (saddle_vec2_t){right_x, right_y};
+    measured.foot[SADDLE_LEFT].contact = true;
+    measured.foot[SADDLE_RIGHT].contact = true;
 }
 
 static void test_measured_feet_give_the_nearest_phase(void)
@@ -546,7 +550,7 @@ static void test_measured_feet_give_the_nearest_phase(void)
         }
         TEST_ASSERT_EQUAL_UINT8(table[i].phase, plan.phase);
         TEST_ASSERT_EQUAL_UINT8(table[i].support, plan.support);
-        feet.known = false;
+        feet_known = false;
         while (plan.step_count < 2u) { /* joins the reference within one step */
             smooth_millisecond(false);
         }
@@ -582,12 +586,12 @@ static void test_feet_that_no_walk_can_start_from_are_said(void)
     }
     stand(1.0f);
     measure(0.0f, 0.1f, 0.0f, -0.1f);
-    feet.contact[SADDLE_RIGHT] = false; /* in the air: no stance to start from */
+    measured.foot[SADDLE_RIGHT].contact = false; /* in the air: no stance to start from */
     for (int k = 0; k < 20; k++) {
         TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_FEET, tick(80000));
         TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STANDING, plan.mode);
     }
-    feet.contact[SADDLE_RIGHT] = true;
+    measured.foot[SADDLE_RIGHT].contact = true;
     TEST_ASSERT_EQUAL_HEX32(0, tick(80000));
     TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STARTING, plan.mode);
 }
@@ -595,8 +599,8 @@ static void test_feet_that_no_walk_can_start_from_are_said(void)
 /* The planned landing as it is measured, shifted, with the rear foot at the origin. */
 static void land_there(float dx, float dy)
 {
-    feet = (saddle_feet_t){.known = true, .contact = {true, true}};
-    feet.cop_m[plan.support] =
+    measure(0.0f, 0.0f, 0.0f, 0.0f);
+    measured.foot[plan.support].cop_m =
         (saddle_vec2_t){planner.cycle.last_step_m.x + dx, planner.cycle.last_step_m.y + dy};
 }
 
@@ -613,8 +617,8 @@ static void test_short_landing_does_not_stop_the_plan_at_once(void)
         float last_m_s = plan.speed_m_s;
         uint32_t steps = plan.step_count;
         while (plan.mode != (uint8_t)SADDLE_MODE_STANDING) {
-            feet.known = plan.step_count != steps;
-            if (feet.known) {
+            feet_known = plan.step_count != steps;
+            if (feet_known) {
                 land_there(-0.02f * (float)(i / 30), 0.0f);
             }
             steps = plan.step_count;
@@ -630,7 +634,7 @@ static void test_short_landing_does_not_stop_the_plan_at_once(void)
 static void land_shifted(float dx, float dy)
 {
     const uint32_t steps = plan.step_count;
-    feet.known = false;
+    feet_known = false;
     while (plan.step_count == steps) {
         tick(1000);
     }
@@ -664,7 +668,7 @@ static void test_misplaced_landing_is_where_the_next_step_starts(void)
         }
         const uint32_t steps = plan.step_count;
         for (int k = 0; k < 3000; k++) { /* taken over once, though the feet are still known */
-            feet.known = plan.step_count == steps;
+            feet_known = plan.step_count == steps;
             smooth_millisecond(config.ankle == SADDLE_ANKLE_CYCLOID);
         }
     }
@@ -690,21 +694,21 @@ static void test_landing_is_taken_over_early_with_both_feet_on_the_ground_only(v
     join(1.0f);
     land_shifted(0.0f, 0.0f);
     land_shifted(0.05f, 0.0f);
-    feet.contact[1 - plan.support] = false;
+    measured.foot[1 - plan.support].contact = false;
     const int64_t origin = plan.origin_x_nm;
     TEST_ASSERT_EQUAL_HEX32(0, tick(0));
     TEST_ASSERT_TRUE(origin == plan.origin_x_nm);
 
     land_shifted(0.05f, 0.0f);
-    feet.known = false;
+    feet_known = false;
     tick(200000); /* beyond half of the quarter of 0.315 s */
-    feet.known = true;
+    feet_known = true;
     TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_FEET, tick(0));
 
     land_shifted(0.05f, 0.0f);
-    feet.contact[plan.support] = false; /* not down yet: waits */
+    measured.foot[plan.support].contact = false; /* not down yet: waits */
     TEST_ASSERT_EQUAL_HEX32(0, tick(0));
-    feet.contact[plan.support] = true;
+    measured.foot[plan.support].contact = true;
     const int64_t waited = plan.origin_x_nm;
     tick(20000);
     TEST_ASSERT_DOUBLE_WITHIN(60.0, 5e7, (double)(plan.origin_x_nm - waited));

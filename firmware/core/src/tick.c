@@ -95,18 +95,6 @@ static uint32_t take_command(saddle_context_t *context, const saddle_input_t *in
     return faults;
 }
 
-/* The feet for the planner: what the supervisor would use of them. */
-static saddle_feet_t measured_feet(const saddle_measurement_t *measurement, uint32_t faults)
-{
-    saddle_feet_t feet;
-    feet.known = (faults & SADDLE_FAULTS_FEET) == 0u;
-    for (int side = 0; side < 2; side++) {
-        feet.cop_m[side] = measurement->foot[side].cop_m;
-        feet.contact[side] = measurement->foot[side].contact;
-    }
-    return feet;
-}
-
 /* Where the wearer is to be. */
 static saddle_intent_t intent_of(const saddle_plan_t *plan)
 {
@@ -132,14 +120,17 @@ static saddle_intent_t intent_of(const saddle_plan_t *plan)
     return intent;
 }
 
-/* The plan under the command, or under a stand where the inputs are lost. */
-static SADDLE_NOINLINE void plan_walk(saddle_context_t *context, const saddle_feet_t *feet,
+/* The plan under the command, or under a stand where the inputs are lost. Its feet are measured as far
+ * as the supervisor would use them. */
+static SADDLE_NOINLINE void plan_walk(saddle_context_t *context, const saddle_sensed_t *sensed,
                                       bool stop, uint32_t dt_us, saddle_output_t *output)
 {
     static const saddle_command_t stand = {(uint8_t)SADDLE_COMMAND_STAND, 0.0f, 0.0f};
+    const bool feet_known = (sensed->faults & SADDLE_FAULTS_FEET) == 0u;
     output->limits |= stop ? (uint32_t)SADDLE_LIMIT_SAFE_STOP : 0u;
-    output->limits |= saddle_planner_update(&context->planner, &context->model,
-                                            stop ? &stand : &context->command, feet, dt_us);
+    output->limits |=
+        saddle_planner_update(&context->planner, &context->model, stop ? &stand : &context->command,
+                              feet_known ? sensed->measurement : NULL, dt_us);
     output->limits |= saddle_plan_write(&context->planner, &context->model, &output->plan);
 }
 
@@ -175,8 +166,7 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     output->faults = take_command(context, input);
     const bool stop = saddle_safe_state_update(&context->safe_state, &context->model,
                                                sensed.faults | output->faults, sensed.dt_s);
-    const saddle_feet_t feet = measured_feet(sensed.measurement, sensed.faults);
-    plan_walk(context, &feet, stop, dt_us, output);
+    plan_walk(context, &sensed, stop, dt_us, output);
     supervise(context, &sensed, output);
     return SADDLE_OK;
 }
@@ -209,13 +199,8 @@ static void advance_far(saddle_planner_t *planner, const saddle_context_t *conte
     saddle_planner_advance(planner, &context->model, rest_us);
 }
 
-saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
-                               saddle_plan_t *plan)
+static saddle_status_t check_plan_at(const saddle_context_t *context, uint64_t time_us)
 {
-    if (plan == NULL) {
-        return SADDLE_ERROR_NULL;
-    }
-    saddle_clear(plan, sizeof *plan);
     if (context == NULL) {
         return SADDLE_ERROR_NULL;
     }
@@ -225,6 +210,20 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
     if (!context->ticked || time_us < context->last_time_us ||
         time_us - context->last_time_us > saddle_plan_horizon_us(&context->planner)) {
         return SADDLE_ERROR_TIME;
+    }
+    return SADDLE_OK;
+}
+
+saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
+                               saddle_plan_t *plan)
+{
+    if (plan == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    const saddle_status_t status = check_plan_at(context, time_us);
+    if (status != SADDLE_OK) {
+        saddle_clear(plan, sizeof *plan);
+        return status;
     }
     saddle_planner_t planner;
     saddle_copy(&planner, &context->planner, sizeof planner);

@@ -196,20 +196,20 @@ float saddle_planner_speed_m_s(const saddle_planner_t *planner)
 
 /* The measured landing, once, as soon as the new stance foot is on the ground. */
 static uint32_t take_landing(saddle_planner_t *planner, const saddle_model_t *model,
-                             const saddle_feet_t *feet)
+                             const saddle_measurement_t *measured)
 {
     const saddle_side_t stance = planner->cycle.quarter.stance;
     const bool waiting = planner->landing_open && !planner->shifting &&
                          !saddle_cycle_before_landing(&planner->cycle);
-    if (!waiting || !feet->known || !feet->contact[stance]) {
+    if (!waiting || measured == NULL || !measured->foot[stance].contact) {
         return 0;
     }
     planner->landing_open = false;
-    if (!feet->contact[saddle_other_side(stance)]) {
+    if (!measured->foot[saddle_other_side(stance)].contact) {
         return 0;
     }
-    const saddle_vec2_t step_m =
-        saddle_vec2_sub(feet->cop_m[stance], feet->cop_m[saddle_other_side(stance)]);
+    const saddle_vec2_t step_m = saddle_vec2_sub(measured->foot[stance].cop_m,
+                                                 measured->foot[saddle_other_side(stance)].cop_m);
     return saddle_cycle_land(&planner->cycle, model, step_m) ? 0u : (uint32_t)SADDLE_LIMIT_FEET;
 }
 
@@ -237,16 +237,17 @@ uint32_t saddle_planner_join(saddle_planner_t *planner, const saddle_model_t *mo
 }
 
 uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_model_t *model,
-                               const saddle_command_t *command, const saddle_feet_t *feet,
-                               uint32_t dt_us)
+                               const saddle_command_t *command,
+                               const saddle_measurement_t *measured, uint32_t dt_us)
 {
     saddle_planner_advance(planner, model, dt_us);
     uint32_t limits = apply_command(planner, model, command);
     if (planner->mode == (uint8_t)SADDLE_MODE_STANDING) {
-        return limits | (planner->speed_m_s > 0.0f ? saddle_start_walk(planner, model, feet) : 0u);
+        return limits |
+               (planner->speed_m_s > 0.0f ? saddle_start_walk(planner, model, measured) : 0u);
     }
     if (!planner->shifting) {
-        limits |= take_landing(planner, model, feet);
+        limits |= take_landing(planner, model, measured);
         choose_profile(planner, model);
     }
     return limits;

@@ -14,12 +14,13 @@ void saddle_planner_reset(saddle_planner_t *planner, const saddle_model_t *model
 uint32_t saddle_planner_join(saddle_planner_t *planner, const saddle_model_t *model,
                              const saddle_command_t *command);
 
-/** Advance by dt_us; then apply a usable command and take over measured feet. A walk starts from
+/** Advance by dt_us; then apply a usable command and take over measured feet, unless `measured` is
+ *  NULL. A walk starts from
  *  measured feet only if both are on the ground and no further apart than a step; else the plan stands
  *  and says SADDLE_LIMIT_FEET. Returns saddle_limit_t bits. */
 uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_model_t *model,
-                               const saddle_command_t *command, const saddle_feet_t *feet,
-                               uint32_t dt_us);
+                               const saddle_command_t *command,
+                               const saddle_measurement_t *measured, uint32_t dt_us);
 
 /** Let time pass, nothing else. */
 void saddle_planner_advance(saddle_planner_t *planner, const saddle_model_t *model, uint32_t dt_us);

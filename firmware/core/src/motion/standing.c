@@ -29,24 +29,24 @@ saddle_vec2_t saddle_between_feet_m(const saddle_planner_t *planner)
     return saddle_vec2_scale(0.5f, planner->other_m);
 }
 
-static bool can_start_from(const saddle_model_t *model, const saddle_feet_t *feet)
+static bool can_start_from(const saddle_model_t *model, const saddle_measurement_t *measured)
 {
     const saddle_vec2_t step_m =
-        saddle_vec2_sub(feet->cop_m[SADDLE_LEFT], feet->cop_m[SADDLE_RIGHT]);
+        saddle_vec2_sub(measured->foot[SADDLE_LEFT].cop_m, measured->foot[SADDLE_RIGHT].cop_m);
     const float reach_m = 2.0f * model->body.half_step_max_m;
-    return feet->contact[SADDLE_LEFT] && feet->contact[SADDLE_RIGHT] &&
+    return measured->foot[SADDLE_LEFT].contact && measured->foot[SADDLE_RIGHT].contact &&
            saddle_in_range(step_m.x, -reach_m, reach_m) &&
            saddle_in_range(step_m.y, START_WIDTH_MIN_M, 2.0f * model->config.step_width_slow_m);
 }
 
 /* Stand on the measured feet from now on. */
-static void stand_on(saddle_planner_t *planner, const saddle_feet_t *feet)
+static void stand_on(saddle_planner_t *planner, const saddle_measurement_t *measured)
 {
-    const saddle_vec2_t left = feet->cop_m[SADDLE_LEFT];
-    const saddle_vec2_t right = feet->cop_m[SADDLE_RIGHT];
+    const saddle_vec2_t left = measured->foot[SADDLE_LEFT].cop_m;
+    const saddle_vec2_t right = measured->foot[SADDLE_RIGHT].cop_m;
     const saddle_side_t front = right.x > left.x ? SADDLE_RIGHT : SADDLE_LEFT;
-    const saddle_vec2_t stance = feet->cop_m[front];
-    const saddle_vec2_t other = feet->cop_m[saddle_other_side(front)];
+    const saddle_vec2_t stance = front == SADDLE_RIGHT ? right : left;
+    const saddle_vec2_t other = front == SADDLE_RIGHT ? left : right;
     saddle_cycle_stand(&planner->cycle, front, 0.5f * (stance.y - other.y));
     planner->other_m = saddle_vec2_sub(other, stance);
     planner->shift_to_m = saddle_between_feet_m(planner);
@@ -73,13 +73,13 @@ static void begin_start(saddle_planner_t *planner, const saddle_model_t *model)
 }
 
 uint32_t saddle_start_walk(saddle_planner_t *planner, const saddle_model_t *model,
-                           const saddle_feet_t *feet)
+                           const saddle_measurement_t *measured)
 {
-    if (feet->known && !can_start_from(model, feet)) {
-        return (uint32_t)SADDLE_LIMIT_FEET;
-    }
-    if (feet->known) {
-        stand_on(planner, feet);
+    if (measured != NULL) {
+        if (!can_start_from(model, measured)) {
+            return (uint32_t)SADDLE_LIMIT_FEET;
+        }
+        stand_on(planner, measured);
     }
     begin_start(planner, model);
     return 0;

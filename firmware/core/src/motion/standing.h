@@ -4,13 +4,6 @@
 
 #include <saddlewalk/private/context.h>
 
-/** Feet as they were measured. */
-typedef struct {
-    bool known;
-    saddle_vec2_t cop_m[2]; /**< in any one frame with x forward and y left */
-    bool contact[2];
-} saddle_feet_t;
-
 /** Whether both feet carry and no step is under way. */
 bool saddle_stands(const saddle_planner_t *planner);
 
@@ -24,10 +17,10 @@ float saddle_standing_height_m(const saddle_planner_t *planner, const saddle_mod
 /** Bring the CoM to a place, from the stance CoP, in a mode. */
 void saddle_begin_shift(saddle_planner_t *planner, saddle_mode_t mode, saddle_vec2_t to_m);
 
-/** Begin a walk: from the measured feet, if they are known. Returns SADDLE_LIMIT_FEET and goes on
- *  standing if no walk can start from them. */
+/** Begin a walk: from the measured feet, or where they are planned if `measured` is NULL. Returns
+ *  SADDLE_LIMIT_FEET and goes on standing if no walk can start from them. */
 uint32_t saddle_start_walk(saddle_planner_t *planner, const saddle_model_t *model,
-                           const saddle_feet_t *feet);
+                           const saddle_measurement_t *measured);
 
 /** Stand after a last swing, which ended beside the stance foot. */
 void saddle_stand_beside(saddle_planner_t *planner, float com_y_m);
