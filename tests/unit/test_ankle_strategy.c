@@ -158,26 +158,6 @@ static void test_height_closes_the_triangle_and_its_rate_is_the_derivative(void)
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, (1.04 * 0.3 - 0.3 * 1.2 - 0.05 * 0.1) / z, rate);
 }
 
-static void test_cycloid_has_the_human_amplitude_and_its_slope(void)
-{
-    for (float speed = 0.05f; speed < 1.93f; speed += 0.05f) {
-        const saddle_quarter_t quarter = quarter_at(speed);
-        const double offset = 0.5 * (double)quarter.width_m - (double)quarter.amplitude_m;
-        const double via_point = sqrt(pow(0.57 * 1.79, 2) - offset * offset);
-        const double excursion = 0.02656 * (double)speed + 0.002575;
-        for (int k = -20; k <= 20; k++) {
-            const double angle = 0.025 * PI * k;
-            const saddle_sample_t height =
-                saddle_cycloid(model_of(&config), &quarter, saddle_sin_cos((float)angle));
-            const double z = via_point - 0.5 * excursion * (1.0 - cos(2.0 * angle));
-            const double slope =
-                -excursion * sin(2.0 * angle) * 0.5 * PI / (double)quarter.length_m;
-            TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, z, height.value);
-            TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, slope, height.slope);
-        }
-    }
-}
-
 static saddle_ankle_state_t ankle_for(float leg_m, bool toe_off, bool *limited)
 {
     saddle_ankle_state_t ankle;
@@ -232,7 +212,6 @@ int main(void)
     RUN_TEST(test_far_from_the_transition_the_leg_has_its_length);
     RUN_TEST(test_rigid_leg_keeps_its_length);
     RUN_TEST(test_height_closes_the_triangle_and_its_rate_is_the_derivative);
-    RUN_TEST(test_cycloid_has_the_human_amplitude_and_its_slope);
     RUN_TEST(test_ankle_angle_gives_the_leg_its_length);
     RUN_TEST(test_leg_out_of_the_ankle_s_range_flexes_the_knee_or_is_said);
     return UNITY_END();

@@ -1,4 +1,5 @@
-/** The CoM in the transverse plane against eq:01 and its derivative in double precision. */
+/** The CoM's path, the paper's and a person's, against the equations and their derivatives in double
+ *  precision. */
 #include "core_test.h"
 
 #include "math/elementary.h"
@@ -77,11 +78,100 @@ static void test_phase_ends_with_the_quarter_and_is_known_at_via_points(void)
     }
 }
 
+static const struct {
+    float lateral_m, lateral_rad, vertical_m, vertical_rad;
+} SHAPES[] = {{0.0f, 0.0f, 0.0f, 0.0f},
+              {0.012f, 0.18f, -0.008f, 0.19f},
+              {-0.1f, -1.5f, 0.1f, 1.5f},
+              {0.03f, 0.6f, 0.02f, -0.9f}};
+
+static const saddle_shape_t *shape_at(size_t i)
+{
+    config.lateral_offset_m = SHAPES[i].lateral_m;
+    config.lateral_delay_rad = SHAPES[i].lateral_rad;
+    config.vertical_offset_m = SHAPES[i].vertical_m;
+    config.vertical_delay_rad = SHAPES[i].vertical_rad;
+    return &model_of(&config)->body.shape;
+}
+
+/* y = c +- A cos(angle - delay), from midway between the feet. */
+static void test_sway_of_a_person_is_offset_and_late(void)
+{
+    for (size_t i = 0; i < COUNT_OF(SHAPES); i++) {
+        for (int side = SADDLE_LEFT; side <= SADDLE_RIGHT; side++) {
+            const saddle_quarter_t quarter = quarter_at(1.2f, (saddle_side_t)side);
+            const saddle_shape_t *shape = shape_at(i);
+            const double sign = side == SADDLE_LEFT ? 1.0 : -1.0;
+            const double amplitude = sign * (double)quarter.amplitude_m;
+            const double middle = -0.5 * sign * (double)quarter.width_m;
+            for (int k = -20; k <= 20; k++) {
+                const double angle = 0.025 * PI * k;
+                const double late = angle - (double)SHAPES[i].lateral_rad;
+                const saddle_sample_t lateral =
+                    saddle_shaped_lateral(&quarter, shape, saddle_sin_cos((float)angle));
+                TEST_ASSERT_DOUBLE_WITHIN(
+                    FLOAT_TOLERANCE, middle + (double)SHAPES[i].lateral_m + amplitude * cos(late),
+                    lateral.value);
+                TEST_ASSERT_DOUBLE_WITHIN(
+                    FLOAT_TOLERANCE, -amplitude * sin(late) * 0.5 * PI / (double)quarter.length_m,
+                    lateral.slope);
+            }
+        }
+    }
+}
+
+/* z = mean + dZ / 2 cos(2 angle - delay), the human amplitude; without offset and delay highest at the
+ * foot via point, where the pendulum has it. */
+static void test_height_has_the_human_amplitude_offset_and_late(void)
+{
+    for (size_t i = 0; i < COUNT_OF(SHAPES); i++) {
+        for (float speed = 0.05f; speed < 1.93f; speed += 0.05f) {
+            const saddle_quarter_t quarter = quarter_at(speed, SADDLE_LEFT);
+            const saddle_shape_t *shape = shape_at(i);
+            const double gap = 0.5 * (double)quarter.width_m - (double)quarter.amplitude_m;
+            const double excursion = 0.02656 * (double)speed + 0.002575;
+            const double mean = sqrt(pow(0.57 * 1.79, 2) - gap * gap) - 0.5 * excursion +
+                                (double)SHAPES[i].vertical_m;
+            for (int k = -20; k <= 20; k++) {
+                const double angle = 0.025 * PI * k;
+                const double late = 2.0 * angle - (double)SHAPES[i].vertical_rad;
+                const saddle_sample_t height = saddle_shaped_height(&quarter, shape, 0.57f * 1.79f,
+                                                                    saddle_sin_cos((float)angle));
+                TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, mean + 0.5 * excursion * cos(late),
+                                          height.value);
+                TEST_ASSERT_DOUBLE_WITHIN(
+                    FLOAT_TOLERANCE, -excursion * sin(late) * 0.5 * PI / (double)quarter.length_m,
+                    height.slope);
+            }
+        }
+    }
+}
+
+static void test_default_shape_is_the_paper_s_to_the_bit(void)
+{
+    const saddle_quarter_t quarter = quarter_at(1.2f, SADDLE_RIGHT);
+    const saddle_model_t *model = model_of(&config);
+    for (int k = -100; k <= 100; k++) {
+        const saddle_sin_cos_t phase =
+            saddle_quarter_phase(&quarter, 0.01f * (float)k * quarter.length_m);
+        const saddle_sample_t paper = saddle_com_lateral(&quarter, phase);
+        for (int last_swing = 0; last_swing <= 1; last_swing++) {
+            const saddle_sample_t person =
+                saddle_shaped_lateral(&quarter, saddle_shape(model, last_swing != 0), phase);
+            ASSERT_SAME_FLOAT(paper.value, person.value);
+            ASSERT_SAME_FLOAT(paper.slope, person.slope);
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_path_is_the_equation_s);
     RUN_TEST(test_via_points);
     RUN_TEST(test_phase_ends_with_the_quarter_and_is_known_at_via_points);
+    RUN_TEST(test_sway_of_a_person_is_offset_and_late);
+    RUN_TEST(test_height_has_the_human_amplitude_offset_and_late);
+    RUN_TEST(test_default_shape_is_the_paper_s_to_the_bit);
     return UNITY_END();
 }

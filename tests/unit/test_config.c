@@ -184,6 +184,16 @@ static void test_reach_that_lays_the_pendulum_flat_is_named(void)
     TEST_ASSERT_EQUAL_STRING("peak_speed_m_s", saddle_config_check(&config));
 }
 
+static void test_path_that_lays_the_pendulum_flat_is_named(void)
+{
+    config.peak_speed_m_s = 3.9f;
+    config.body_height_m = 1.2f; /* reach 0.515 m: with 0.22 m across, 0.313 of 0.468 m^2 */
+    config.lateral_offset_m = -0.1f;
+    TEST_ASSERT_NULL(saddle_config_check(&config)); /* 0.32 m across: 0.368 of 0.421 m^2 */
+    config.lateral_delay_rad = 1.5f;                /* 0.65 m across: 0.688 of 0.421 m^2 */
+    TEST_ASSERT_EQUAL_STRING("lateral_offset_m", saddle_config_check(&config));
+}
+
 static void test_longer_side_that_does_not_reach_its_shortest_step_is_named(void)
 {
     config.half_step_intercept_m = 0.35f; /* reach 0.4838 m; the shortest 1.05 times 0.3536 m */
@@ -211,6 +221,7 @@ int main(void)
     RUN_TEST(test_half_step_out_of_reach_is_named);
     RUN_TEST(test_configuration_without_a_feasible_walk_is_named);
     RUN_TEST(test_reach_that_lays_the_pendulum_flat_is_named);
+    RUN_TEST(test_path_that_lays_the_pendulum_flat_is_named);
     RUN_TEST(test_longer_side_that_does_not_reach_its_shortest_step_is_named);
     return UNITY_END();
 }

@@ -140,7 +140,7 @@ static void assert_plan_fulfils(const saddle_context_t *context, uint64_t now_us
                               expected.landing_m.y);
 }
 
-static void test_expected_landing_is_the_plan_s_next_saddle_via_point(void)
+static void assert_landings_are_expected(void)
 {
     for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
         saddle_context_t context;
@@ -154,6 +154,18 @@ static void test_expected_landing_is_the_plan_s_next_saddle_via_point(void)
             assert_plan_fulfils(&context, input.time_us, &output.plan);
         }
     }
+}
+
+static void test_expected_landing_is_the_plan_s_next_saddle_via_point(void)
+{
+    assert_landings_are_expected();
+}
+
+static void test_a_person_s_steady_walk_is_as_expected(void)
+{
+    config.lateral_offset_m = -0.012f;
+    config.lateral_delay_rad = 0.3f;
+    assert_landings_are_expected();
 }
 
 /* From a long wide step into a short narrow one. */
@@ -299,6 +311,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_steady_step_is_the_paper_s_walk_at_every_phase);
     RUN_TEST(test_expected_landing_is_the_plan_s_next_saddle_via_point);
+    RUN_TEST(test_a_person_s_steady_walk_is_as_expected);
     RUN_TEST(test_quarters_have_shapes_of_their_own);
     RUN_TEST(test_com_outside_the_step_is_at_its_nearer_end);
     RUN_TEST(test_time_to_the_landing_is_at_most_the_foresight);

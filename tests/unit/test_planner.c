@@ -227,6 +227,56 @@ static void test_cycloid_excursion_is_delta_z_and_the_ankle_is_real_everywhere(v
     }
 }
 
+/* A person's shape in a steady walk: the path, and the ankle angles that eq:05 gives of the leg. */
+static void test_shape_is_in_the_steady_plan(void)
+{
+    config.ankle = SADDLE_ANKLE_CYCLOID;
+    config.lateral_offset_m = 0.01f;
+    config.lateral_delay_rad = 0.2f;
+    config.vertical_offset_m = 0.004f;
+    config.vertical_delay_rad = 0.3f;
+    for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
+        const walk_t walk = walk_at((double)SPEEDS[i]);
+        const double leg_m = (double)model_of(&config)->body.leg_m;
+        const double gap = 0.5 * walk.width - walk.amplitude;
+        const double delta_z = 0.02656 * walk.speed + 0.002575;
+        const double mean = sqrt(0.57 * 1.79 * 0.57 * 1.79 - gap * gap) - 0.5 * delta_z + 0.004;
+        join(SPEEDS[i]);
+        for (double t = 0.0; t < 4.2 * walk.step_time; t += 0.008) {
+            const double turn = PI * t / walk.step_time;
+            const double leg = (double)plan.leg_length_m;
+            const double angle = (double)(plan.toe_off_rad + plan.heel_strike_rad);
+            TEST_ASSERT_DOUBLE_WITHIN(TOLERANCE, 0.01 + walk.amplitude * cos(turn - 0.2),
+                                      plan.com_m.y);
+            TEST_ASSERT_DOUBLE_WITHIN(TOLERANCE, mean + 0.5 * delta_z * cos(2.0 * turn - 0.3),
+                                      plan.com_m.z);
+            TEST_ASSERT_DOUBLE_WITHIN(
+                TOLERANCE, leg_m + 0.2 * sin(0.5 * angle) - (double)plan.knee_flexion_m, leg);
+            TEST_ASSERT_EQUAL_HEX32(0, tick(8000));
+        }
+    }
+}
+
+static void test_heel_strikes_at_its_share_of_a_step(void)
+{
+    config.strike_share = 0.36f;
+    for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
+        const walk_t walk = walk_at((double)SPEEDS[i]);
+        join(SPEEDS[i]);
+        double t = 0.0;
+        for (int k = 0; k < 100; k++) {
+            const expected_t e = expected_at(&walk, t);
+            const double left = e.to_saddle - (0.5 - 0.36) * walk.step_time;
+            if (e.to_saddle > 1e-5 && walk.step_time - e.to_saddle > 1e-5) {
+                TEST_ASSERT_DOUBLE_WITHIN(TOLERANCE * fmax(1.0, 1.0 / walk.speed), fmax(left, 0.0),
+                                          plan.time_to_heel_strike_s);
+            }
+            TEST_ASSERT_EQUAL_HEX32(0, tick(40000));
+            t += 0.04;
+        }
+    }
+}
+
 static void test_cycloid_that_no_ankle_can_give_is_said(void)
 {
     config.ankle = SADDLE_ANKLE_CYCLOID;
@@ -873,6 +923,8 @@ int main(void)
     RUN_TEST(test_velocities_are_derivatives);
     RUN_TEST(test_vertical_excursion_is_the_model_page_s);
     RUN_TEST(test_cycloid_excursion_is_delta_z_and_the_ankle_is_real_everywhere);
+    RUN_TEST(test_shape_is_in_the_steady_plan);
+    RUN_TEST(test_heel_strikes_at_its_share_of_a_step);
     RUN_TEST(test_cycloid_that_no_ankle_can_give_is_said);
     RUN_TEST(test_toe_off_limit_is_said);
     RUN_TEST(test_start_change_and_stop_are_smooth_in_every_ankle);

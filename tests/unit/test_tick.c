@@ -642,7 +642,7 @@ static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
         TEST_ASSERT_GREATER_THAN_INT(5000, levels[i]);
     }
     for (size_t i = 0; i < COUNT_OF(reasons); i++) {
-        TEST_ASSERT_GREATER_THAN_INT(40, reasons[i]); /* half of the configurations know it */
+        TEST_ASSERT_GREATER_THAN_INT(10, reasons[i]); /* some need a rare configuration */
     }
 }
 

@@ -33,6 +33,13 @@ static void random_body(follower_t *follower)
         config->ankle = (saddle_ankle_t)(random_bits(&follower->random) % SADDLE_ANKLE_COUNT);
         config->acceleration_m_s2 = (float)random_in(&follower->random, 0.2, 1.0);
         config->shift_time_s = (float)random_in(&follower->random, 0.3, 1.5);
+        if (random_bits(&follower->random) % 2u == 0u) {
+            config->lateral_offset_m = (float)random_in(&follower->random, -0.02, 0.02);
+            config->lateral_delay_rad = (float)random_in(&follower->random, -0.3, 0.5);
+            config->vertical_offset_m = (float)random_in(&follower->random, -0.02, 0.02);
+            config->vertical_delay_rad = (float)random_in(&follower->random, -0.5, 0.7);
+            config->strike_share = (float)random_in(&follower->random, 0.2, 0.45);
+        }
     } while (saddle_config_check(config) != NULL);
 }
 

@@ -1,7 +1,7 @@
 /* Random schedules of commands, watched at 1 kHz: what must hold of every plan.
  *
- * A schedule is a random body, ankle model and asymmetry, and 30 s of commands at irregular ticks;
- * then a stand. Between the ticks the plan is asked for every millisecond, and at the next tick it
+ * A schedule is a random body, ankle model, asymmetry and shape of the CoM's path, and 30 s of
+ * commands at irregular ticks; then a stand. Between the ticks the plan is asked for every millisecond, and at the next tick it
  * must be the tick's own. Positions: each channel moves by what its reported velocities say (mean
  * value: between the smaller and the larger one, times the time), within its speed bound, to
  * JUMP_M. The bounds are derived where they are computed, from these facts of the plan:
@@ -10,7 +10,8 @@
  *   a the acceleration, r = v / L the quarters per second; a minimum-jerk profile has a slope
  *   of at most 1.875 and a curvature of at most 5.774; erf a slope of at most 2 / sqrt(pi).
  *
- * Excepted, as in the paper: z of the CoM jumps at landings under `erf` (every other check of it
+ * Excepted, as in the paper: z of the CoM jumps at landings under `erf`, and under `rigid` too if the
+ * shape of its path has it nearer to one foot there (every other check of it
  * holds), and what the erf's tails leave at the foot via points: pitch and z may jump there by
  * what erfc says. */
 #include "walks.h"
@@ -38,7 +39,7 @@ enum { COM_X, COM_Y, COM_Z, LEFT_X, LEFT_Y, LEFT_Z, RIGHT_X, RIGHT_Y, RIGHT_Z, M
 /* The quarter of the stride that a plan is in, as its outputs tell it. */
 typedef struct {
     double half, width, amplitude, vertical;
-    double off_y, off_slope, off_z; /* what fades out: mismatches where it began, at most */
+    double off_y, off_slope, off_z, off_climb; /* what fades out: mismatches where it began */
 } quarter_t;
 
 typedef struct {
@@ -100,6 +101,14 @@ static double pendulum_m(const walk_t *walk)
     return (double)walk->context.model.body.pendulum_m;
 }
 
+/* The legs have lengths of their own: where the CoM is nearer to the one foot, z jumps. */
+static bool shaped_legs(const walk_t *walk)
+{
+    return walk->config.ankle != SADDLE_ANKLE_CYCLOID &&
+           ((double)walk->config.lateral_offset_m != 0.0 ||
+            (double)walk->config.lateral_delay_rad != 0.0);
+}
+
 static bool is_erf(const walk_t *walk)
 {
     return walk->config.ankle == SADDLE_ANKLE_ERF;
@@ -107,8 +116,31 @@ static bool is_erf(const walk_t *walk)
 
 /* ---- bounds -------------------------------------------------------------------------------- */
 
-/* The quarter that `now` has just entered. At a foot via point the slope is continuous and
- * the shapes differ in y; at a landing they meet in y and differ in slope by their amplitudes. */
+/* The shape of the CoM's path, c + A cos(angle - lag): the paper's in a last swing. */
+typedef struct {
+    double y, y_lag, z, z_lag; /* z_lag in gait phase */
+} shape_t;
+
+static shape_t shape_of(const walk_t *walk, const saddle_plan_t *now)
+{
+    const saddle_config_t *config = &walk->config;
+    if (!to_landing(now) && !(now->landing_m.x > 0.0f)) {
+        return (shape_t){0.0, 0.0, 0.0, 0.0};
+    }
+    return (shape_t){(double)config->lateral_offset_m, (double)config->lateral_delay_rad,
+                     (double)config->vertical_offset_m, 0.5 * (double)config->vertical_delay_rad};
+}
+
+/* How much the slopes of a wave of amplitude A per half step may differ from those of the quarter
+ * before, where it lags: at the foot via point it has a slope of A sin(lag) then. */
+static double off_slope(double now, double old, double lag, bool beside)
+{
+    return 0.5 * PI * (beside ? (now + old) * fabs(sin(lag)) : fabs(now - old));
+}
+
+/* The quarter that `now` has just entered. At a foot via point without a lag the slope is continuous
+ * and the shapes differ in y; at a landing they meet in y and differ in slope by their
+ * amplitudes. A lag mixes the two. */
 static quarter_t enter_quarter(const walk_t *walk, const saddle_plan_t *now)
 {
     const double speed = (double)now->speed_m_s;
@@ -119,18 +151,27 @@ static quarter_t enter_quarter(const walk_t *walk, const saddle_plan_t *now)
     quarter.amplitude = 1.01 * quarter.width / (2.0 * PI * fmax(speed, 0.5));
     quarter.vertical = 1.01 * ((double)walk->config.vertical_slope_s * speed +
                                (double)walk->config.vertical_intercept_m);
+    const bool beside = to_landing(now);
+    const double angle = beside ? 0.0 : -0.5 * PI;
+    const double old_half = old->half > 0.0 ? old->half : quarter.half;
+    const shape_t shape = shape_of(walk, now);
+    const double outward = now->support == (uint8_t)SADDLE_LEFT ? 1.0 : -1.0;
     const double gap = 0.5 * quarter.width - quarter.amplitude;
     const double beside_z = sqrt(pendulum_m(walk) * pendulum_m(walk) - gap * gap);
-    const double y = fabs((double)now->com_m.y - (double)now->foot_m[now->support].y);
-    const double z = (double)now->com_m.z;
-    if (to_landing(now)) {
-        quarter.off_y = fabs(y - gap) + slack_m;
-        quarter.off_z = fabs(z - beside_z) + slack_m;
-    } else {
-        quarter.off_y = slack_m;
-        quarter.off_slope =
-            1e-3 + fabs(quarter.amplitude - old->amplitude) * 0.5 * PI / quarter.half;
-        quarter.off_z = fabs(z - (beside_z - quarter.vertical)) + slack_m;
+    const double y = (double)now->com_m.y - (double)now->foot_m[now->support].y;
+    const double reference_y =
+        outward * (quarter.amplitude * cos(angle - shape.y_lag) - 0.5 * quarter.width) + shape.y;
+    const double reference_z =
+        beside_z + shape.z - quarter.vertical * pow(sin(angle - shape.z_lag), 2.0);
+    const double lag = (double)walk->config.lateral_delay_rad;
+    quarter.off_y = fabs(y - reference_y) + slack_m;
+    quarter.off_z = fabs((double)now->com_m.z - reference_z) + slack_m;
+    quarter.off_slope =
+        1e-3 + off_slope(quarter.amplitude / quarter.half, old->amplitude / old_half, lag, beside);
+    quarter.off_climb = PI * fabs(sin((double)walk->config.vertical_delay_rad)) *
+                        (quarter.vertical / quarter.half + old->vertical / old_half);
+    if (!beside && !(now->landing_m.x > 0.0f)) { /* the lag ends */
+        quarter.off_slope += 0.5 * PI * (1.0 - cos(lag)) * old->amplitude / old_half;
     }
     return quarter;
 }
@@ -157,10 +198,19 @@ static bounds_t standing_bounds(const walk_t *walk)
     return bounds;
 }
 
-/* Largest toe-off angle [E13]: the leg from the CoM, no higher than l_p, to a foot at L, W / 2. */
+/* Farthest that the CoM is from its stance foot across: W / 2 where it lands, and the shape's part. */
+static double aside_bound(const walk_t *walk)
+{
+    return (0.5 + fabs(sin((double)walk->config.lateral_delay_rad)) / PI) * walk->widest +
+           fabs((double)walk->config.lateral_offset_m);
+}
+
+/* Largest toe-off angle [E13]: the leg from the CoM, no higher than l_p or the shape's offset above
+ * it, to a foot at L, W / 2. */
 static double toe_off_bound(const walk_t *walk, double half)
 {
-    const double leg = hypot(hypot(pendulum_m(walk), half), 0.5 * walk->widest);
+    const double high = pendulum_m(walk) + fabs((double)walk->config.vertical_offset_m);
+    const double leg = hypot(hypot(high, half), aside_bound(walk));
     const double sine = (leg - pendulum_m(walk)) / (2.0 * (double)walk->config.cop_range_m);
     return 2.0 * asin(fmin(sine, 1.0));
 }
@@ -175,7 +225,7 @@ static double pitch_bound(const walk_t *walk, const quarter_t *quarter, double s
     }
     if (!is_erf(walk)) { /* leg = hypot(x, y, z); angle = 2 asin(elongation / 2 d_h) */
         const double leg =
-            (quarter->half * speed + 0.5 * walk->widest * move[COM_Y]) / (0.9 * pendulum_m(walk)) +
+            (quarter->half * speed + aside_bound(walk) * move[COM_Y]) / (0.9 * pendulum_m(walk)) +
             move[COM_Z];
         const double cosine = fmax(cos(0.5 * toe_off), 0.2);
         return leg / ((double)walk->config.cop_range_m * cosine) + MIN_JERK_SLOPE * toe_off * r;
@@ -201,8 +251,9 @@ static void com_bounds(const walk_t *walk, const quarter_t *q, double speed, bou
     const double ddy =
         wave * wave * q->amplitude + MIN_JERK_CURVATURE * q->off_y + 4.0 * q->off_slope * q->half;
     /* z = const - dZ sin^2(wave x / L) + mismatch */
-    const double dz = wave * q->vertical + MIN_JERK_SLOPE * q->off_z;
-    const double ddz = 2.0 * wave * wave * q->vertical + MIN_JERK_CURVATURE * q->off_z;
+    const double dz = wave * q->vertical + MIN_JERK_SLOPE * q->off_z + q->off_climb * q->half;
+    const double ddz = 2.0 * wave * wave * q->vertical + MIN_JERK_CURVATURE * q->off_z +
+                       4.0 * q->off_climb * q->half;
     bounds->move[COM_X] = speed;
     bounds->move[COM_Y] = dy * r;
     bounds->move[COM_Z] = dz * r;
@@ -243,7 +294,7 @@ static bounds_t walking_bounds(const walk_t *walk, const quarter_t *quarter, dou
     const double range = (double)walk->config.cop_range_m;
     const double leg = pendulum_m(walk) + 2.0 * range;
     bounds.move[COM_Z] = (leg * range * bounds.pitch + quarter->half * speed +
-                          0.5 * walk->widest * bounds.move[COM_Y]) /
+                          aside_bound(walk) * bounds.move[COM_Y]) /
                          low;
     const double tau = (double)walk->config.ankle_time_constant_s;
     const double heel = (double)walk->config.heel_strike_max_rad;
@@ -326,7 +377,7 @@ static void check_moves(walk_t *walk, const saddle_plan_t *now, double dt_s, con
     velocities(now, v1);
     for (int i = 0; i < MOVES; i++) {
         const bool erf_z = i == COM_Z && is_erf(walk) && steps(now);
-        if (erf_z && landed) {
+        if (landed && (erf_z || (i == COM_Z && shaped_legs(walk)))) {
             continue;
         }
         const double tail_m =
@@ -671,6 +722,13 @@ static saddle_config_t random_config(walk_t *walk)
             config.step_length_factor_right = random_factor(walk, 0.7, 1.3);
             config.step_width_factor_left = random_factor(walk, 0.6, 1.9);
             config.step_width_factor_right = random_factor(walk, 0.6, 1.9);
+        }
+        if (random_bits(&walk->random) % 2u == 0u) {
+            config.lateral_offset_m = random_factor(walk, -0.04, 0.04);
+            config.lateral_delay_rad = random_factor(walk, -1.0, 1.0);
+            config.vertical_offset_m = random_factor(walk, -0.03, 0.03);
+            config.vertical_delay_rad = random_factor(walk, -1.5, 1.5);
+            config.strike_share = random_factor(walk, 0.1, 0.5);
         }
     } while (saddle_config_check(&config) != NULL);
     return config;

@@ -50,10 +50,17 @@ typedef struct {
     float half_step_intercept_m;
     float vertical_slope_s; /**< peak-to-peak vertical CoM excursion, [E5] */
     float vertical_intercept_m;
-    float lateral_factor;          /**< of the lateral CoM amplitude; 1: as printed, [E7] */
-    float peak_speed_m_s;          /**< where reach and XCoM limit meet, [E6] */
-    float ankle_time_constant_s;   /**< of the erf profile, [E12] */
-    float heel_strike_max_rad;     /**< a larger commanded angle is limited */
+    float vertical_offset_m; /**< of the mean CoM height, cycloid only; 0: the CoM is at its highest
+                                  where the pendulum has it, [E24] */
+    float vertical_delay_rad; /**< of the CoM's height, in angle of its own wave, [E24] */
+    float lateral_factor;     /**< of the lateral CoM amplitude; 1: as printed, [E7] */
+    float lateral_offset_m;   /**< of the CoM's path to the left of midway between the feet, [E7] */
+    float lateral_delay_rad;  /**< of its sway, in gait phase, [E7] */
+    float peak_speed_m_s;     /**< where reach and XCoM limit meet, [E6] */
+    float ankle_time_constant_s; /**< of the erf profile, [E12] */
+    float heel_strike_max_rad;   /**< a larger commanded angle is limited */
+    float strike_share; /**< of a step, from passing the stance foot to the heel strike; 0: by the
+                             foot's angle, [E38] */
     float acceleration_m_s2;       /**< largest change of the walking speed */
     float shift_time_s;            /**< of the weight to the first stance leg, and back */
     float step_length_factor_left; /**< steps that the left foot makes; 1: symmetric, [E4] */
@@ -224,7 +231,8 @@ typedef struct {
     float foot_pitch_rad[2];            /**< sole to ground, positive heel up */
     saddle_vec3_t swing_velocity_m_s;   /**< of the foot that is not in support */
     float leg_length_m;                 /**< stance leg */
-    float knee_flexion_m;               /**< stance leg shorter than l_p by this, cycloid only */
+    float knee_flexion_m;               /**< stance leg shorter than with a straight knee by this,
+                                             cycloid only, [E25] */
     float toe_off_rad, heel_strike_rad; /**< ankle angles, sole to ground */
     float time_to_via_point_s;          /**< next via point, or end of a shift of weight */
     float time_to_heel_strike_s;        /**< next heel strike, [E12] */

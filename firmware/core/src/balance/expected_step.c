@@ -9,24 +9,17 @@
 /* A step that ends beside the stance foot still has a quarter with a shape. */
 #define QUARTER_MIN_M 1.0e-3f
 
-static saddle_com_state_t state_at(const saddle_quarter_t *quarter, float speed_m_s, float x_m)
+/* Where the foot lands, exactly midway between the feet. */
+#define PHASE_SADDLE ((saddle_sin_cos_t){1.0f, 0.0f})
+
+/* Where the CoM is x_m from the stance CoP, which is that phase of the quarter. */
+static saddle_com_state_t state_at(const saddle_quarter_t *quarter, const saddle_shape_t *shape,
+                                   float speed_m_s, float x_m, saddle_sin_cos_t phase)
 {
-    const saddle_sample_t lateral = saddle_com_lateral(quarter, saddle_quarter_phase(quarter, x_m));
+    const saddle_sample_t lateral = saddle_shaped_lateral(quarter, shape, phase);
     const saddle_com_state_t state = {
         .com_m = {x_m, lateral.value},
         .velocity_m_s = {speed_m_s, lateral.slope * speed_m_s},
-    };
-    return state;
-}
-
-/* The same where the foot lands: midway between the feet. */
-static saddle_com_state_t state_at_saddle(const saddle_quarter_t *quarter, float speed_m_s)
-{
-    const float outward = saddle_outward(quarter->stance);
-    const float slope = -outward * quarter->amplitude_m * SADDLE_HALF_PI / quarter->length_m;
-    const saddle_com_state_t state = {
-        .com_m = {quarter->length_m, -outward * 0.5f * quarter->width_m},
-        .velocity_m_s = {speed_m_s, slope * speed_m_s},
     };
     return state;
 }
@@ -45,11 +38,14 @@ saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_ste
         running = saddle_quarter(model, step->stance, step->half_behind_m, step->width_behind_m,
                                  step->speed_m_s);
     }
+    const bool last_swing = half_ahead_m <= QUARTER_MIN_M;
+    const saddle_shape_t *shape = saddle_shape(model, last_swing);
     saddle_expectation_t expected;
-    expected.now = state_at(&running, step->speed_m_s, phase_m);
-    expected.landing = half_ahead_m > QUARTER_MIN_M
-                           ? state_at_saddle(&ahead, step->speed_m_s)
-                           : state_at(&ahead, step->speed_m_s, half_ahead_m);
+    expected.now = state_at(&running, shape, step->speed_m_s, phase_m,
+                            saddle_quarter_phase(&running, phase_m));
+    expected.landing =
+        state_at(&ahead, shape, step->speed_m_s, half_ahead_m,
+                 last_swing ? saddle_quarter_phase(&ahead, half_ahead_m) : PHASE_SADDLE);
     expected.landing_m = step->landing_m;
     expected.time_s = saddle_smaller((half_ahead_m - phase_m) / step->speed_m_s,
                                      model->config.prediction_horizon_s);

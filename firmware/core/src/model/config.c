@@ -26,10 +26,15 @@ static const saddle_config_field_t FIELDS[] = {
     FIELD(half_step_intercept_m, 0.01f, 0.5f),
     FIELD(vertical_slope_s, -0.1f, 0.1f),
     FIELD(vertical_intercept_m, 0.0f, 0.1f),
+    FIELD(vertical_offset_m, -0.1f, 0.1f),
+    FIELD(vertical_delay_rad, -1.5f, 1.5f),
     FIELD(lateral_factor, 0.1f, 5.0f),
+    FIELD(lateral_offset_m, -0.1f, 0.1f),
+    FIELD(lateral_delay_rad, -1.5f, 1.5f),
     FIELD(peak_speed_m_s, 0.5f, 3.9f),
     FIELD(ankle_time_constant_s, 0.01f, 1.0f),
     FIELD(heel_strike_max_rad, 0.0f, 1.0f),
+    FIELD(strike_share, 0.0f, 0.5f),
     FIELD(acceleration_m_s2, 0.01f, 5.0f),
     FIELD(shift_time_s, 0.1f, 10.0f),
     FIELD(step_length_factor_left, 0.5f, 1.5f),
@@ -96,10 +101,15 @@ saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg)
         .half_step_intercept_m = 0.1351f,
         .vertical_slope_s = 0.02656f,
         .vertical_intercept_m = 0.002575f,
+        .vertical_offset_m = 0.0f,
+        .vertical_delay_rad = 0.0f,
         .lateral_factor = 1.0f,
+        .lateral_offset_m = 0.0f,
+        .lateral_delay_rad = 0.0f,
         .peak_speed_m_s = 3.0f,
         .ankle_time_constant_s = 0.11f,
         .heel_strike_max_rad = 0.5236f,
+        .strike_share = 0.0f,
         .acceleration_m_s2 = 0.5f,
         .shift_time_s = 0.8f,
         .step_length_factor_left = 1.0f,
@@ -207,6 +217,11 @@ static const char *check_reach(const saddle_config_t *config)
     }
     if (reach_m2 + width_m * width_m > 0.8f * pendulum_m * pendulum_m) {
         return "peak_speed_m_s";
+    }
+    const float aside_m = saddle_magnitude(config->lateral_offset_m) +
+                          (1.0f + saddle_magnitude(config->lateral_delay_rad)) * width_m;
+    if (reach_m2 + aside_m * aside_m > 0.9f * pendulum_m * pendulum_m) {
+        return "lateral_offset_m";
     }
     return NULL;
 }

@@ -70,6 +70,38 @@ static void derive_walk(const saddle_config_t *config, saddle_body_t *body)
     }
 }
 
+/* [E25] Beside the foot, where the ankles change over, no leg is longer: there the CoM is at most
+ * aside_m farther to the side than in the paper's path, in steps of at most twice a step width. */
+static float flat_leg_m(const saddle_config_t *config, const saddle_body_t *body)
+{
+    if (config->ankle != SADDLE_ANKLE_CYCLOID) {
+        return body->pendulum_m;
+    }
+    const float width_m =
+        2.0f * saddle_larger(config->step_width_slow_m, config->step_width_fast_m);
+    const float aside_m = saddle_magnitude(body->shape.lateral_m) +
+                          (1.0f - body->shape.lateral_cos) * width_m / SADDLE_PI;
+    return body->pendulum_m + saddle_larger(0.0f, body->shape.vertical_m) +
+           aside_m * (aside_m + width_m) / (2.0f * body->pendulum_m);
+}
+
+/* [E7] [E24] [E38] The wave of the height has twice the frequency of the phase. */
+static void derive_shape(const saddle_config_t *config, saddle_body_t *body)
+{
+    const saddle_sin_cos_t lateral = saddle_sin_cos(config->lateral_delay_rad);
+    const saddle_sin_cos_t vertical = saddle_sin_cos(0.5f * config->vertical_delay_rad);
+    body->shape = (saddle_shape_t){
+        .lateral_m = config->lateral_offset_m,
+        .lateral_sin = lateral.sin,
+        .lateral_cos = lateral.cos,
+        .vertical_m = config->vertical_offset_m,
+        .vertical_sin = vertical.sin,
+        .vertical_cos = vertical.cos,
+    };
+    body->strike_lead = 1.0f - 2.0f * config->strike_share;
+    body->leg_m = flat_leg_m(config, body);
+}
+
 static void derive_stop(const saddle_config_t *config, saddle_body_t *body)
 {
     body->crawl_m_s = crawl_m_s(config, body);
@@ -100,6 +132,7 @@ void saddle_model_init(saddle_model_t *model, const saddle_config_t *config)
 {
     saddle_copy(&model->config, config, sizeof *config);
     derive_walk(config, &model->body);
+    derive_shape(config, &model->body);
     derive_stop(config, &model->body);
     derive_balance(config, &model->body);
     derive_times(config, &model->body);

@@ -104,24 +104,11 @@ void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m
                        height;
 }
 
-/* [E24] */
-saddle_sample_t saddle_cycloid(const saddle_model_t *model, const saddle_quarter_t *quarter,
-                               saddle_sin_cos_t phase)
-{
-    const float offset_m = 0.5f * quarter->width_m - quarter->amplitude_m;
-    const float via_point_m =
-        sqrtf(model->body.pendulum_m * model->body.pendulum_m - offset_m * offset_m);
-    saddle_sample_t height;
-    height.value = via_point_m - quarter->vertical_m * phase.sin * phase.sin;
-    height.slope = -SADDLE_PI * quarter->vertical_m * phase.sin * phase.cos / quarter->length_m;
-    return height;
-}
-
 /* [E25] */
 bool saddle_ankle_for_leg(const saddle_model_t *model, float leg_length_m, bool toe_off_acts,
                           saddle_ankle_state_t *ankle)
 {
-    const float elongation = leg_length_m - model->body.pendulum_m;
+    const float elongation = leg_length_m - model->body.leg_m;
     const float sine = elongation / (2.0f * model->config.cop_range_m);
     const float wanted_rad = 2.0f * saddle_asin(saddle_clamp(sine, 0.0f, 1.0f));
     const bool limited = wanted_rad > SADDLE_HALF_PI;

@@ -9,9 +9,9 @@
 typedef struct {
     float toe_off_rad, heel_strike_rad; /**< sole to ground */
     float leg_length_m;                 /**< stance leg, [E11] */
-    float knee_flexion_m;               /**< by which the stance leg is shorter than l_p, [E25] */
-    float leg_rate_m_s;                 /**< its time derivative */
-    bool limited;                       /**< an angle is beyond what an ankle does */
+    float knee_flexion_m; /**< by which the stance leg is shorter than straight, [E25] */
+    float leg_rate_m_s;   /**< its time derivative */
+    bool limited;         /**< an angle is beyond what an ankle does */
 } saddle_ankle_state_t;
 
 /** The transition at the saddle via point of a quarter. heel_strike_rad in [0, pi/2]. */
@@ -39,10 +39,6 @@ void saddle_ankle(const saddle_model_t *model, const saddle_transition_t *transi
 /** [E14] CoM height and its rate over a stance CoP at `offset_m` horizontally from it. */
 void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m,
                        saddle_vec2_t velocity_m_s, float *height_m, float *height_rate_m_s);
-
-/** [E24] CoM height of the cycloid model at a phase (com_path.h), and dz/dx. */
-saddle_sample_t saddle_cycloid(const saddle_model_t *model, const saddle_quarter_t *quarter,
-                               saddle_sin_cos_t phase);
 
 /** [E12] Distance that the CoM goes between a heel strike at that angle and the saddle via point. */
 float saddle_heel_strike_lead_m(const saddle_model_t *model, float heel_strike_rad);

@@ -17,7 +17,20 @@
  *  grows with the distance. */
 saddle_sin_cos_t saddle_quarter_phase(const saddle_quarter_t *quarter, float x_m);
 
-/** [E7] CoM y from the stance CoP, and dy/dx, at a phase. */
+/** The person's shape; at the end of a walk, once its last swing has begun, the paper's: there the CoM
+ *  comes to where it is beside the stance foot in standing. */
+const saddle_shape_t *saddle_shape(const saddle_model_t *model, bool last_swing);
+
+/** [E7] CoM y from the stance CoP, and dy/dx, at a phase: of the paper's path. The swing foot's line
+ *  goes through it. */
 saddle_sample_t saddle_com_lateral(const saddle_quarter_t *quarter, saddle_sin_cos_t phase);
+
+/** [E7] The same of a person's path, by which the CoM goes. */
+saddle_sample_t saddle_shaped_lateral(const saddle_quarter_t *quarter, const saddle_shape_t *shape,
+                                      saddle_sin_cos_t phase);
+
+/** [E24] CoM height of the cycloid model at a phase, and dz/dx; pendulum_m: l_p. */
+saddle_sample_t saddle_shaped_height(const saddle_quarter_t *quarter, const saddle_shape_t *shape,
+                                     float pendulum_m, saddle_sin_cos_t phase);
 
 #endif

@@ -54,9 +54,13 @@ static place_t reference_at(const saddle_cycle_t *cycle, const saddle_model_t *m
 {
     const saddle_sample_t none = {0.0f, 0.0f};
     const bool cycloid = model->config.ankle == SADDLE_ANKLE_CYCLOID;
+    const saddle_quarter_t *quarter = &cycle->quarter;
+    const saddle_shape_t *shape =
+        saddle_shape(model, cycle->last_swing && !saddle_cycle_before_landing(cycle));
     return (place_t){
-        .lateral = saddle_com_lateral(&cycle->quarter, phase),
-        .vertical = cycloid ? saddle_cycloid(model, &cycle->quarter, phase) : none,
+        .lateral = saddle_shaped_lateral(quarter, shape, phase),
+        .vertical =
+            cycloid ? saddle_shaped_height(quarter, shape, model->body.pendulum_m, phase) : none,
     };
 }
 
@@ -70,9 +74,9 @@ static place_t place_at(const saddle_cycle_t *cycle, const place_t *reference, f
 }
 
 /* Give the running quarter, at a phase, a new shape; what it changes at the CoM fades out until its
- * end. Returns the new reference. */
-static place_t reshape(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_quarter_t quarter,
-                       saddle_sin_cos_t phase, const place_t *actual)
+ * end. */
+static void reshape(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_quarter_t quarter,
+                    saddle_sin_cos_t phase, const place_t *actual)
 {
     const float x_m = saddle_position_to_m(cycle->position);
     const bool before = saddle_cycle_before_landing(cycle);
@@ -87,22 +91,21 @@ static place_t reshape(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
         cycle->transition = saddle_transition(
             model, &cycle->quarter, before ? cycle->next_heel_strike_rad : cycle->heel_strike_rad);
     }
-    return reference;
 }
 
 /* The foot via point: the next step's length follows from the speed now. Every mismatch has gone. */
 static void pass_foot(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_fixed_t speed)
 {
     const saddle_side_t stance = cycle->quarter.stance;
+    const float speed_m_s = saddle_speed_to_m_s(speed);
     const place_t actual = reference_at(cycle, model, SADDLE_PHASE_FOOT);
     cycle->phase = (uint8_t)((cycle->phase + 1u) % 4u);
     cycle->stride_count += cycle->phase == 0u ? 1u : 0u;
     cycle->quarter_length = saddle_half_step(model, saddle_other_side(stance), speed);
-    (void)reshape(cycle, model,
-                  saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
-                                 saddle_magnitude(cycle->swing.line_y_m),
-                                 saddle_speed_to_m_s(speed)),
-                  SADDLE_PHASE_FOOT, &actual);
+    reshape(cycle, model,
+            saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
+                           saddle_magnitude(cycle->swing.line_y_m), speed_m_s),
+            SADDLE_PHASE_FOOT, &actual);
 }
 
 /* The line on which the next swing foot travels, from the new stance CoP: at its place beside the
@@ -118,10 +121,9 @@ static float swing_line_y_m(const saddle_cycle_t *cycle, const saddle_model_t *m
     return outward * saddle_clamp(outward * line_y_m, 0.5f * width_m, 2.0f * width_m);
 }
 
-/* Let the other foot, at lifted_m, begin a swing: what it is off its line fades out. lateral: the
- * reference there. */
+/* Let the other foot, at lifted_m, begin a swing at a phase: what it is off its line fades out. */
 static void lift_off(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t lifted_m,
-                     float speed_m_s, saddle_sample_t lateral)
+                     float speed_m_s, saddle_sin_cos_t phase)
 {
     const saddle_side_t foot = saddle_other_side(cycle->quarter.stance);
     const float x_m = saddle_position_to_m(cycle->position);
@@ -130,7 +132,8 @@ static void lift_off(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_
     swing->land_progress = cycle->last_swing ? 0.5f : 1.0f;
     swing->clearance_m = model->config.swing_clearance_m;
     swing->line_y_m = swing_line_y_m(cycle, model, foot, speed_m_s);
-    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral);
+    const saddle_sample_t line =
+        saddle_swing_line(swing, x_m, saddle_com_lateral(&cycle->quarter, phase));
     swing->offset_m.x = lifted_m.x - line.value;
     swing->offset_m.y = lifted_m.y - swing->line_y_m;
 }
@@ -197,12 +200,11 @@ static void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model, sadd
     cycle->stance_y_m += step_y_m;
     cycle->heel_strike_rad = cycle->next_heel_strike_rad;
     plan_heel_strike(cycle, model, heel_strike_rad);
-    const place_t reference =
-        reshape(cycle, model,
-                saddle_quarter(model, saddle_other_side(cycle->quarter.stance), length_m,
-                               saddle_magnitude(step_y_m), speed_m_s),
-                SADDLE_PHASE_LANDED, &place);
-    lift_off(cycle, model, lifted_m, speed_m_s, reference.lateral);
+    reshape(cycle, model,
+            saddle_quarter(model, saddle_other_side(cycle->quarter.stance), length_m,
+                           saddle_magnitude(step_y_m), speed_m_s),
+            SADDLE_PHASE_LANDED, &place);
+    lift_off(cycle, model, lifted_m, speed_m_s, SADDLE_PHASE_LANDED);
 }
 
 void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
@@ -229,12 +231,12 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
     cycle->quarter = saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
                                     saddle_magnitude(start->other_m.y), speed_m_s);
     cycle->swing.path_width_m = cycle->quarter.width_m;
-    lift_off(cycle, model, start->other_m, speed_m_s, saddle_com_lateral(&cycle->quarter, phase));
+    lift_off(cycle, model, start->other_m, speed_m_s, phase);
     if (beside) {
         cycle->quarter = saddle_quarter(model, stance, cycle->quarter.length_m,
                                         saddle_magnitude(cycle->swing.line_y_m), speed_m_s);
     }
-    (void)reshape(cycle, model, cycle->quarter, phase, &actual);
+    reshape(cycle, model, cycle->quarter, phase, &actual);
     if (start->under_way) {
         cycle->swing.lift_progress = 0.0f;
         cycle->lateral.length_m = 0.0f;
@@ -332,7 +334,7 @@ static float swing_progress(const saddle_cycle_t *cycle, float progress)
     return 0.5f * progress + (saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f);
 }
 
-static void swing_foot(const saddle_cycle_t *cycle, float x_m, saddle_sample_t reference,
+static void swing_foot(const saddle_cycle_t *cycle, float x_m, saddle_sin_cos_t phase,
                        float progress, saddle_swing_state_t *foot)
 {
     const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
@@ -341,7 +343,7 @@ static void swing_foot(const saddle_cycle_t *cycle, float x_m, saddle_sample_t r
         .rate_hz = 0.5f * speed_m_s / cycle->quarter.length_m,
         .x_m = x_m,
         .speed_m_s = speed_m_s,
-        .lateral = reference,
+        .lateral = saddle_com_lateral(&cycle->quarter, phase),
     };
     saddle_foot_swing(&cycle->swing, &place, foot);
 }
@@ -364,17 +366,18 @@ static bool landing_usable(const saddle_cycle_t *cycle, const saddle_model_t *mo
            saddle_vec2_dot(com_m, com_m) < reach_m2;
 }
 
-/* The measured landing changed the line: what the swing foot is off it from here on fades out.
- * lateral: the new reference. */
+/* The measured landing changed the line: what the swing foot is off it from this phase on fades
+ * out. */
 static void redirect_swing(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t foot_m,
-                           float speed_m_s, saddle_sample_t lateral)
+                           float speed_m_s, saddle_sin_cos_t phase)
 {
     const float x_m = saddle_position_to_m(cycle->position);
     const float fade = 1.0f - saddle_min_jerk(2.0f * air_after_landing(cycle, x_m));
     saddle_swing_t *swing = &cycle->swing;
     swing->line_y_m =
         swing_line_y_m(cycle, model, saddle_other_side(cycle->quarter.stance), speed_m_s);
-    const saddle_sample_t line = saddle_swing_line(swing, x_m, lateral);
+    const saddle_sample_t line =
+        saddle_swing_line(swing, x_m, saddle_com_lateral(&cycle->quarter, phase));
     swing->offset_m.x = (foot_m.x - line.value) / fade;
     swing->offset_m.y = (foot_m.y - swing->line_y_m) / fade;
 }
@@ -399,8 +402,8 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
     }
     const float x_m = old_x_m - dx_m;
     const float length_m = cycle->quarter.length_m * x_m / old_x_m;
-    const place_t old_reference =
-        reference_at(cycle, model, saddle_quarter_phase(&cycle->quarter, old_x_m));
+    const saddle_sin_cos_t old_phase = saddle_quarter_phase(&cycle->quarter, old_x_m);
+    const place_t old_reference = reference_at(cycle, model, old_phase);
     place_t place = place_at(cycle, &old_reference, old_x_m);
     place.lateral.value -= dy_m;
     if (x_m < LANDING_STRETCH_MAX * old_x_m ||
@@ -410,8 +413,8 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
         return false;
     }
     saddle_swing_state_t foot;
-    swing_foot(cycle, old_x_m, old_reference.lateral,
-               swing_progress(cycle, quarter_progress(cycle, old_x_m)), &foot);
+    swing_foot(cycle, old_x_m, old_phase, swing_progress(cycle, quarter_progress(cycle, old_x_m)),
+               &foot);
     const saddle_vec2_t swing_m = {foot.position_m.x - dx_m, foot.position_m.y - dy_m};
     cycle->position = saddle_position_from_m(x_m);
     cycle->quarter_length = saddle_position_from_m(length_m);
@@ -423,8 +426,8 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
         saddle_quarter(model, stance, length_m, saddle_magnitude(step_m.y), speed_m_s);
     const saddle_sin_cos_t phase =
         saddle_quarter_phase(&quarter, saddle_position_to_m(cycle->position));
-    const place_t reference = reshape(cycle, model, quarter, phase, &place);
-    redirect_swing(cycle, model, swing_m, speed_m_s, reference.lateral);
+    reshape(cycle, model, quarter, phase, &place);
+    redirect_swing(cycle, model, swing_m, speed_m_s, phase);
     return true;
 }
 
@@ -465,9 +468,10 @@ static float landing_angle_rad(const saddle_cycle_t *cycle, const saddle_model_t
         return angles_at_saddle(cycle, model).heel_strike_rad;
     }
     const saddle_quarter_t *quarter = &cycle->quarter;
-    const float z_m = saddle_cycloid(model, quarter, SADDLE_PHASE_LANDING).value;
+    const place_t landing = reference_at(cycle, model, SADDLE_PHASE_LANDING);
+    const float y_m = landing.lateral.value + saddle_outward(quarter->stance) * quarter->width_m;
     saddle_ankle_state_t ankle;
-    saddle_ankle_for_leg(model, length_m(quarter->length_m, 0.5f * quarter->width_m, z_m), false,
+    saddle_ankle_for_leg(model, length_m(quarter->length_m, y_m, landing.vertical.value), false,
                          &ankle);
     return ankle.heel_strike_rad;
 }
@@ -482,12 +486,19 @@ static float swing_pitch_rad(const saddle_cycle_t *cycle, const saddle_model_t *
     return -landing_angle_rad(cycle, model) * saddle_min_jerk(2.0f * progress - 1.0f);
 }
 
-float saddle_cycle_com_y_m(const saddle_cycle_t *cycle)
+float saddle_cycle_com_y_m(const saddle_cycle_t *cycle, const saddle_model_t *model)
 {
     const float x_m = saddle_position_to_m(cycle->position);
-    const saddle_sin_cos_t phase = saddle_quarter_phase(&cycle->quarter, x_m);
-    return saddle_com_lateral(&cycle->quarter, phase).value +
-           saddle_blend_at(&cycle->lateral, x_m).value;
+    const place_t reference =
+        reference_at(cycle, model, saddle_quarter_phase(&cycle->quarter, x_m));
+    return place_at(cycle, &reference, x_m).lateral.value;
+}
+
+float saddle_cycle_strike_lead_m(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                                 float half_step_m)
+{
+    return model->config.strike_share > 0.0f ? model->body.strike_lead * half_step_m
+                                             : cycle->next_lead_m;
 }
 
 void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
@@ -497,8 +508,8 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
     const float x_m = saddle_position_to_m(cycle->position);
     const float quarter_m = cycle->quarter.length_m;
     const bool before = saddle_cycle_before_landing(cycle);
-    const place_t reference =
-        reference_at(cycle, model, saddle_quarter_phase(&cycle->quarter, x_m));
+    const saddle_sin_cos_t phase = saddle_quarter_phase(&cycle->quarter, x_m);
+    const place_t reference = reference_at(cycle, model, phase);
     const saddle_sample_t lateral = sum(reference.lateral, saddle_blend_at(&cycle->lateral, x_m));
     const float to_saddle_m = before ? quarter_m - x_m : quarter_m + x_m;
     pose->progress = quarter_progress(cycle, x_m);
@@ -512,7 +523,7 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
         erf_height(cycle, model, to_saddle_m, speed_m_s, pose);
     }
     const float progress = swing_progress(cycle, pose->progress);
-    swing_foot(cycle, x_m, reference.lateral, progress, &pose->swing);
+    swing_foot(cycle, x_m, phase, progress, &pose->swing);
     pose->stance_pitch_rad = before ? pose->ankle.toe_off_rad : -pose->ankle.heel_strike_rad;
     pose->swing_pitch_rad = swing_pitch_rad(cycle, model, progress);
 }

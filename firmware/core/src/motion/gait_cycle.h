@@ -59,7 +59,12 @@ bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);
 float saddle_cycle_distance_to_via_point_m(const saddle_cycle_t *cycle);
 
 /** The pose's com_m.y alone. */
-float saddle_cycle_com_y_m(const saddle_cycle_t *cycle);
+float saddle_cycle_com_y_m(const saddle_cycle_t *cycle, const saddle_model_t *model);
+
+/** [E12] [E38] Way of the CoM from the next heel strike to the saddle via point, where the step is
+ *  twice half_step_m long. */
+float saddle_cycle_strike_lead_m(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                                 float half_step_m);
 
 void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
                        saddle_pose_t *pose);

@@ -71,7 +71,7 @@ static void write_step_events(const saddle_cycle_t *cycle, const saddle_model_t 
     }
     const float landing_m =
         saddle_cycle_before_landing(cycle) ? distance_m : distance_m + half_step_m;
-    const float lead_m = cycle->next_lead_m;
+    const float lead_m = saddle_cycle_strike_lead_m(cycle, model, half_step_m);
     const float heel_m = landing_m > lead_m ? landing_m - lead_m : 0.0f;
     const saddle_pace_t pace = saddle_pace(&cycle->profile);
     plan->time_to_via_point_s = saddle_pace_time_s(&pace, distance_m);
@@ -93,7 +93,7 @@ static void write_events(const saddle_planner_t *planner, const saddle_model_t *
 }
 
 /* While both feet stand there is no step, and its ankles rest. */
-static void write_no_step(saddle_plan_t *plan)
+static void write_no_step(const saddle_model_t *model, saddle_plan_t *plan)
 {
     plan->phase = 0;
     plan->theta_rad = 0.0f;
@@ -105,7 +105,7 @@ static void write_no_step(saddle_plan_t *plan)
     plan->swing_velocity_m_s.x = 0.0f;
     plan->swing_velocity_m_s.y = 0.0f;
     plan->swing_velocity_m_s.z = 0.0f;
-    plan->knee_flexion_m = 0.0f;
+    plan->knee_flexion_m = model->body.leg_m - model->body.pendulum_m;
     plan->toe_off_rad = 0.0f;
     plan->heel_strike_rad = 0.0f;
 }
@@ -147,7 +147,7 @@ static void write_standing(const saddle_planner_t *planner, const saddle_model_t
     plan->leg_length_m = leg_m;
     plan->landing_m.x = planner->other_m.x;
     plan->landing_m.y = stance_y_m + planner->other_m.y;
-    write_no_step(plan);
+    write_no_step(model, plan);
 }
 
 /* [E8] */

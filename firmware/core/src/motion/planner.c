@@ -170,7 +170,7 @@ static uint32_t advance_cycle(saddle_planner_t *planner, const saddle_model_t *m
         }
     }
     if (arrived) {
-        after_last_swing(planner, model, saddle_cycle_com_y_m(cycle));
+        after_last_swing(planner, model, saddle_cycle_com_y_m(cycle, model));
     }
     return rest_us;
 }

@@ -17,6 +17,13 @@
 /** Fixed point: a speed in 2^-42 m/s or a position in 2^-42 um. */
 typedef int64_t saddle_fixed_t;
 
+/** How a person's CoM path differs from the paper's: offsets, and the sine and cosine of what its
+ *  phase lags by, [E7] [E24]. */
+typedef struct {
+    float lateral_m, lateral_sin, lateral_cos;
+    float vertical_m, vertical_sin, vertical_cos;
+} saddle_shape_t;
+
 /** Coefficients, derived once. */
 typedef struct {
     float pendulum_m;              /**< l_p, [E1] */
@@ -32,6 +39,9 @@ typedef struct {
     float crawl_m_s;            /**< a stop goes on at no less until it brakes, */
     float braked_in_a_step_m_s; /**< and at no more: every step is long enough to brake from it */
     float braked_in_a_tick_m_s; /**< what the longest tick can brake */
+    float strike_lead;          /**< of half a step, from heel strike to landing, [E38] */
+    float leg_m;                /**< with the sole flat and the knee straight, [E25] */
+    saddle_shape_t shape;
     float command_max_age_us, com_max_age_us, foot_max_age_us; /**< to compare ages with */
     uint32_t tick_max_us;
     uint32_t shift_us; /**< of a shift of weight */
