@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets cross-compiler samples bench-baselines format lint clean help
+.PHONY: build demo amalgamation controller coverage test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets cross-compiler samples bench-baselines format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -36,6 +36,12 @@ test-clang: build-clang/build.ninja .venv/installed-test ## the same built by cl
 
 test-sanitize: build-sanitize/build.ninja .venv/installed-test ## the same with the address and undefined sanitizers
 	$(call run_tests,build-sanitize,sanitize,$(SANITIZED))
+
+coverage: build-coverage/build.ninja .venv/installed-test ## every branch and condition of the firmware, by the C tests
+	@rm -rf build-coverage/profiles build-coverage/reports
+	@$(BIN)/ninja -C build-coverage --quiet tests
+	@$(BIN)/ctest --preset coverage --quiet --output-junit reports/ctest.xml
+	@$(BIN)/python tests/coverage/gate.py build-coverage
 
 test-socketcan: build .venv/installed-test ## the tests on the kernel's own CAN, in User Mode Linux where need be
 	@tools/vcan/with-vcan build/socketcan $(BIN)/pytest -m socketcan -p no:cacheprovider \
@@ -91,6 +97,7 @@ help: ## this list
 build/build.ninja: PRESET := release
 build-clang/build.ninja: PRESET := clang
 build-sanitize/build.ninja: PRESET := sanitize
+build-coverage/build.ninja: PRESET := coverage
 build-cortex-m4f/build.ninja: PRESET := cortex-m4f
 %/build.ninja: .venv/installed-build CMakePresets.json
 	@echo "Configuring $*"

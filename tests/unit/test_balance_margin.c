@@ -346,6 +346,18 @@ static void test_steady_walk_is_learned(void)
 }
 
 /* A walker of even speed bears more: 2.4 of the ripple, between the two bounds. */
+/* Its length is not known where the other foot was not measured. */
+static void test_step_without_a_length_is_not_learned(void)
+{
+    const float margin = 0.1f;
+    const saddle_step_tracker_t steps = {
+        .struck = true, .v_comp_known = true, .half_step_m = 0.3f, .step_time_s = 0.6f};
+    saddle_learning_t learning = {.lowest_margin = margin};
+    saddle_learning_step(&learning, &steps, margin);
+    ASSERT_SAME_FLOAT(0.0f, learning.walk.step_length_m);
+    ASSERT_SAME_FLOAT(0.0f, learning.walk.step_time_s);
+}
+
 static void test_tolerance_is_the_walker_s_own(void)
 {
     const float starts[] = {0.005f, 0.035f, 0.06f, 0.2f};
@@ -614,6 +626,7 @@ int main(void)
     RUN_TEST(test_com_below_the_knees_is_unstable_once_it_was_seen_above);
     RUN_TEST(test_height_before_a_gap_says_nothing_of_sinking);
     RUN_TEST(test_steady_walk_is_learned);
+    RUN_TEST(test_step_without_a_length_is_not_learned);
     RUN_TEST(test_tolerance_is_the_walker_s_own);
     RUN_TEST(test_push_teaches_no_tolerance);
     RUN_TEST(test_caution_band_is_the_walker_s_own);

@@ -339,6 +339,17 @@ static void test_in_range(void)
     expect(!saddle_in_range(NAN, -1.0f, 3.0f), "not a number", NAN);
 }
 
+/** What takes no time of the walks over every float. */
+static void test_ends(void)
+{
+    expect_outside(saddle_sin, SADDLE_TWO_PI, 0.0f, 0.0f, 0.0f);
+    expect_outside(saddle_cos, SADDLE_TWO_PI, 1.0f, 1.0f, 1.0f);
+    expect_outside(saddle_asin, 1.0f, -SADDLE_HALF_PI, SADDLE_HALF_PI, 0.0f);
+    expect_outside(saddle_exp, 88.0f, 0.0f, EXP_GREATEST, 0.0f);
+    expect_outside(saddle_erf, ERF_SATURATION, -1.0f, 1.0f, 0.0f);
+    expect_outside(saddle_min_jerk, 1.0f, 0.0f, 1.0f, 0.0f);
+}
+
 static const struct {
     const char *name;
     void (*run)(void);
@@ -346,7 +357,7 @@ static const struct {
     {"sin", test_sin},     {"cos", test_cos},           {"sin_cos", test_sin_cos},
     {"asin", test_asin},   {"erf", test_erf},           {"erf_saturation", test_erf_saturation},
     {"exp", test_exp},     {"min_jerk", test_min_jerk}, {"min_jerk_slope", test_min_jerk_slope},
-    {"clamp", test_clamp}, {"in_range", test_in_range},
+    {"clamp", test_clamp}, {"in_range", test_in_range}, {"ends", test_ends},
 };
 
 int main(int argc, char **argv)

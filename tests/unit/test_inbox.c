@@ -71,6 +71,21 @@ static void send_set(uint8_t counter, size_t frames_sent, uint64_t time_us)
     }
 }
 
+static void test_a_command_comes_by_can_too_and_a_code_changes_no_input(void)
+{
+    const saddle_cmac_key_t key = {{0}, {0}, {0}};
+    saddle_frame_t command, code;
+    saddle_wire_encode_command(&stroll, 3, &command);
+    saddle_wire_encode_code(&key, 1, 1, &command, &code);
+    saddle_inbox_take_frame(&inbox, code.id, code.data, sizeof code.data, 100);
+    TEST_ASSERT_EQUAL_UINT32(1, inbox.receiver.accepted);
+    TEST_ASSERT_EQUAL_UINT32(0, inbox.came);
+    saddle_inbox_take_frame(&inbox, command.id, command.data, sizeof command.data, 200);
+    TEST_ASSERT_EQUAL_UINT32(50, saddle_inbox_read(&inbox, 250)->command_age_us);
+    TEST_ASSERT_EQUAL_FLOAT(0.5f, inbox.input.command.speed_m_s);
+    TEST_ASSERT_EQUAL_INT(SADDLE_SOURCE_CAN, inbox.authority);
+}
+
 static void test_each_part_has_its_age(void)
 {
     send_set(0, 3, 1000);
@@ -107,6 +122,7 @@ int main(void)
     RUN_TEST(test_the_first_that_commands_has_authority_until_released);
     RUN_TEST(test_a_chosen_source_is_the_only_one);
     RUN_TEST(test_what_cannot_be_used_gives_no_authority_and_no_age);
+    RUN_TEST(test_a_command_comes_by_can_too_and_a_code_changes_no_input);
     RUN_TEST(test_each_part_has_its_age);
     RUN_TEST(test_no_age_is_mistaken_for_never);
     RUN_TEST(test_a_set_is_of_one_instant_and_read_once);

@@ -4,6 +4,7 @@
 #include "motion/plan_output.h"
 #include "motion/planner.h"
 #include "motion/standing.h"
+#include "motion/stopping.h"
 
 /* Metres, rad, m/s: floats of order 1 in a chain of ten operations. */
 static const double TOLERANCE = 5e-6;
@@ -486,6 +487,16 @@ static void test_stop_slows_no_further_than_a_step_can_brake(void)
     }
 }
 
+/* As where braking has become too weak: the stop waits for a later step. */
+static void test_stop_that_cannot_brake_in_time_brakes_no_longer(void)
+{
+    join(1.9f);
+    planner.braking = true;
+    saddle_plan_stop(&planner, model_of(&config));
+    TEST_ASSERT_FALSE(planner.braking);
+    TEST_ASSERT_FALSE(planner.cycle.last_swing);
+}
+
 static void test_stop_of_a_slow_walk_stays_slow(void)
 {
     static const float accelerations[] = {0.5f, 5.0f};
@@ -932,6 +943,7 @@ int main(void)
     RUN_TEST(test_command_at_any_moment_is_obeyed_in_the_end);
     RUN_TEST(test_restart_while_stopping_is_smooth);
     RUN_TEST(test_stop_slows_no_further_than_a_step_can_brake);
+    RUN_TEST(test_stop_that_cannot_brake_in_time_brakes_no_longer);
     RUN_TEST(test_stop_of_a_slow_walk_stays_slow);
     RUN_TEST(test_ticks_of_any_length_start_alike);
     RUN_TEST(test_stop_while_starting);

@@ -316,6 +316,21 @@ static void test_margin_is_the_room_left_on_the_scarcer_axis(void)
     }
 }
 
+/* In no time nothing grows, and no place is too near to sustain the XCoM: the reach alone counts. */
+static void test_step_of_no_time_has_the_whole_reach_behind_the_xcom(void)
+{
+    saddle_recovery_target_t target = planned_walk(1.2);
+    target.step_time_s = 0.0f;
+    target.departure_m.x = -0.5f;
+    const saddle_recovery_t recovery = recovery_from(&target);
+    const double xcom_m = (double)target.xcom_m.x - 0.5;
+    TEST_ASSERT_TRUE(recovery.found);
+    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, xcom_m + heel(&target), recovery.landing_m.x);
+    config.recovery_width_max_m = 3.0f; /* so that the scarcer axis is the sagittal one */
+    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, reach() + xcom_m + heel(&target),
+                              recovery_from(&target).margin_m);
+}
+
 /* No jump on any way through the departures: a millimetre of them is at most one of margin. */
 static void test_margin_is_continuous(void)
 {
@@ -499,6 +514,7 @@ int main(void)
     RUN_TEST(test_xcom_that_goes_aside_widens_the_step_or_narrows_it);
     RUN_TEST(test_landing_is_the_nearest_place_of_all_that_catch);
     RUN_TEST(test_margin_is_the_room_left_on_the_scarcer_axis);
+    RUN_TEST(test_step_of_no_time_has_the_whole_reach_behind_the_xcom);
     RUN_TEST(test_margin_is_continuous);
     RUN_TEST(test_landing_follows_the_departure_by_its_share);
     RUN_TEST(test_share_that_is_followed_changes_neither_margin_nor_decision);

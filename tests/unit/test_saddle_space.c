@@ -548,9 +548,20 @@ static void test_gravity_ends_where_the_pendulum_lies_down(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.1, expected, force.x); /* 6 kN; 1 - x^2 keeps 5 digits */
 }
 
+/* On the arc, and moving along it: no way is left. */
+static void test_exit_from_the_arc_is_where_it_is(void)
+{
+    const saddle_bos_t bos = side_by_side(0.25f);
+    const saddle_vec2_t point = {0.0f, 0.25f};
+    const saddle_vec2_t exit = saddle_bos_exit_m(&bos, point, (saddle_vec2_t){1.0f, 0.0f});
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.0, exit.x);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.25, exit.y);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_exit_from_the_arc_is_where_it_is);
     RUN_TEST(test_margins_of_each_region_by_hand);
     RUN_TEST(test_close_feet_make_the_plain_disc);
     RUN_TEST(test_frame_follows_the_feet);

@@ -54,11 +54,14 @@ static void test_what_is_written_is_read_again(void)
 static void test_other_lines_are_no_frame_and_do_not_harm_the_next(void)
 {
     static const char *const lines[] = {
-        "t\r",        "t10\r",     "t1002FF\r",
-        "t1001FFF\r", "t10\r",     "t1009001122334455667788\r",
-        "t8000\r",    "tG000\r",   "t100 \r",
-        "t1001G0\r",  "t1001 0\r", "T000001000\r",
-        "r1000\r",    "x\r",       "t10080011223344556677FFFFFFFFFFFFFFFFFFFFFFFFFF\r",
+        "t\r",          "t10\r",
+        "t1002FF\r",    "t1001FFF\r",
+        "t10\r",        "t1009001122334455667788\r",
+        "t8000\r",      "tG000\r",
+        "t100 \r",      "t1001G0\r",
+        "t1001g0\r",    "t1001 0\r",
+        "T000001000\r", "r1000\r",
+        "x\r",          "t10080011223344556677FFFFFFFFFFFFFFFFFFFFFFFFFF\r",
     };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; ++i) {
         setUp();

@@ -97,6 +97,17 @@ static void test_no_rate_keeps_the_speed_and_no_speed_keeps_the_place(void)
     ASSERT_SAME_FLOAT(0.0f, time_s(&profile, 0.0f));
 }
 
+/* Where a quotient would be 0/0. */
+static void test_from_rest_and_at_no_rate_everything_stays_a_number(void)
+{
+    profile = profile_of(1.0f, 1.0f, 0.0f);
+    TEST_ASSERT_TRUE(saddle_profile_advance(&profile, 80000) == profile.speed * 80000);
+    profile = profile_of(0.0f, 1.0f, 0.5f);
+    TEST_ASSERT_TRUE(saddle_profile_speed_after(&profile, 0.0f) == 0);
+    profile = profile_of(0.0f, 1.0f, 1.0e-45f); /* the speed after 0.1 m underflows */
+    ASSERT_SAME_FLOAT(SADDLE_TIME_MAX_S, time_s(&profile, 0.1f));
+}
+
 static void test_time_is_the_inverse_of_advance(void)
 {
     for (int i = 0; i < 50000; i++) {
@@ -129,6 +140,7 @@ int main(void)
     RUN_TEST(test_advance_is_the_closed_form_targets_inside_the_interval_or_not);
     RUN_TEST(test_constant_speed_is_exact_in_any_ticks);
     RUN_TEST(test_no_rate_keeps_the_speed_and_no_speed_keeps_the_place);
+    RUN_TEST(test_from_rest_and_at_no_rate_everything_stays_a_number);
     RUN_TEST(test_time_is_the_inverse_of_advance);
     RUN_TEST(test_way_beyond_a_stop_never_comes);
     return UNITY_END();

@@ -272,6 +272,21 @@ static void test_strike_that_cannot_be_measured_ends_what_was_known(void)
     TEST_ASSERT_FALSE(tracker.half_step_known);
 }
 
+/* Both feet land at one instant: between them there is no time to take a mean over. */
+static void test_strikes_of_one_instant_give_no_v_comp(void)
+{
+    measured.foot[SADDLE_LEFT].contact = false;
+    measured.foot[SADDLE_RIGHT].contact = false;
+    track();
+    track();
+    measured.foot[SADDLE_LEFT].contact = true;
+    track();
+    measured.foot[SADDLE_RIGHT].contact = true;
+    track_for(0.0f, 0);
+    TEST_ASSERT_TRUE(tracker.struck);
+    TEST_ASSERT_FALSE(tracker.v_comp_known);
+}
+
 /* ---- forgetting ---------------------------------------------------------------------------- */
 
 static void test_last_step_is_forgotten_after_step_time_max(void)
@@ -455,6 +470,7 @@ int main(void)
     RUN_TEST(test_step_that_begins_without_a_velocity_gives_no_v_comp);
     RUN_TEST(test_step_over_a_gap_between_the_ticks_gives_no_v_comp);
     RUN_TEST(test_strike_that_cannot_be_measured_ends_what_was_known);
+    RUN_TEST(test_strikes_of_one_instant_give_no_v_comp);
     RUN_TEST(test_last_step_is_forgotten_after_step_time_max);
     RUN_TEST(test_step_is_forgotten_also_while_nothing_is_measured);
     RUN_TEST(test_step_is_forgotten_over_a_long_gap_between_the_ticks);

@@ -381,6 +381,23 @@ static void test_before_a_session_no_code_is_good(void)
     TEST_ASSERT_FALSE(obeys(1, 3));
 }
 
+/** A code is good for one command, and only with a freshness above the last. */
+static void test_a_code_authenticates_one_command_once(void)
+{
+    saddle_wire_demand_codes(&receiver, KEY);
+    saddle_wire_open_session(&receiver, 7);
+    TEST_ASSERT_TRUE(obeys(7, 18));
+    const saddle_frame_t without_code = command_frame(3);
+    TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE, accept(&without_code));
+    TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_code);
+    TEST_ASSERT_FALSE(obeys(7, 3)); /* as counter 3 follows 18, as freshness it does not */
+    TEST_ASSERT_EQUAL_UINT32(2, receiver.bad_code);
+    TEST_ASSERT_FALSE(obeys(8, 20)); /* of another session */
+    TEST_ASSERT_EQUAL_UINT32(3, receiver.bad_code);
+    TEST_ASSERT_TRUE(obeys(7, 21));
+    TEST_ASSERT_EQUAL_UINT32(0, receiver.bad_counter);
+}
+
 static void test_when_a_session_is_over(void)
 {
     const saddle_output_t commanded = {.status = SADDLE_OK};
@@ -423,6 +440,7 @@ int main(void)
     RUN_TEST(test_what_was_not_learned_has_no_numbers);
     RUN_TEST(test_process_bytes);
     RUN_TEST(test_before_a_session_no_code_is_good);
+    RUN_TEST(test_a_code_authenticates_one_command_once);
     RUN_TEST(test_when_a_session_is_over);
     return UNITY_END();
 }

@@ -407,12 +407,13 @@ static void encode_foresight(const saddle_scores_t *scores, const saddle_verdict
 {
     const bool stop = holds(scores, SADDLE_VALID_STOP);
     const bool compared = verdict->compared;
+    const bool track = stop && compared;
     ENCODE(&frames[0], SCORES_ENERGY, counter,
            CODE(SCORES_ENERGY_CAN_STOP, scores->can_stop) |
                CODE(SCORES_ENERGY_ON_TRACK, verdict->on_track) |
                CODE(SCORES_ENERGY_PAPER_STABLE, scores->paper_stable) |
                NUMBER(SCORES_ENERGY_EXCESS_STOP, stop, scores->excess_stop_j) |
-               NUMBER(SCORES_ENERGY_EXCESS_TRACK, stop && compared, verdict->excess_track_j));
+               NUMBER(SCORES_ENERGY_EXCESS_TRACK, track, verdict->excess_track_j));
     ENCODE(&frames[1], SCORES_EXPECTED, counter,
            NUMBER(SCORES_EXPECTED_EBOS_COM, compared, verdict->ebos_com_m) |
                NUMBER(SCORES_EXPECTED_EBOS_XCOM, compared, verdict->ebos_xcom_m));
@@ -517,7 +518,7 @@ void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter
                                 saddle_frame_t *frame)
 {
     ENCODE(frame, COMMAND, counter,
-           CODE(COMMAND_MODE, command->mode < 15u ? command->mode : 15u) |
+           CODE(COMMAND_MODE, limited(command->mode, 15u)) |
                NUMBER(COMMAND_SPEED, true, command->speed_m_s) |
                NUMBER(COMMAND_HEEL_STRIKE, true, command->heel_strike_rad) |
                CODE(COMMAND_WIRE_VERSION, SADDLE_WIRE_VERSION));

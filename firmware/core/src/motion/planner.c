@@ -199,8 +199,7 @@ static uint32_t take_landing(saddle_planner_t *planner, const saddle_model_t *mo
                              const saddle_measurement_t *measured)
 {
     const saddle_side_t stance = planner->cycle.quarter.stance;
-    const bool waiting = planner->landing_open && !planner->shifting &&
-                         !saddle_cycle_before_landing(&planner->cycle);
+    const bool waiting = planner->landing_open && !saddle_cycle_before_landing(&planner->cycle);
     if (!waiting || measured == NULL || !measured->foot[stance].contact) {
         return 0;
     }
