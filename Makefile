@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller coverage test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets cross-compiler samples bench-baselines format lint clean help
+.PHONY: build demo amalgamation controller coverage test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets cross-compiler samples physics bench-baselines format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -74,6 +74,8 @@ SANITIZED = LD_PRELOAD="$$(gcc -print-file-name=libasan.so) libstdc++.so.6" \
 
 samples: .venv/installed-samples ## recorded walks, for saddlewalk replay --sample
 
+physics: .venv/installed-physics ## MuJoCo and a QP solver, for --plant mujoco
+
 bench-baselines: .venv/installed-bench ## the walking QPs that saddlewalk bench compares the core with
 
 format: .venv/installed-test ## lay out the Python and C code
@@ -109,7 +111,7 @@ build-cortex-m4f/build.ninja: PRESET := cortex-m4f
 
 # .venv/installed-EXTRA: this package, editable, and what its optional dependency EXTRA names.
 .venv/installed-build: .venv/bin/pip
-.venv/installed-test .venv/installed-samples .venv/installed-bench: .venv/installed-build
+.venv/installed-test .venv/installed-samples .venv/installed-bench .venv/installed-physics: .venv/installed-build
 .venv/installed-%: pyproject.toml requirements.lock firmware/core/include/saddlewalk/version.h
 	@echo "Installing Python packages: $*"
 	@PIP_CONSTRAINT=requirements.lock $(PIP) install --editable .[$*]

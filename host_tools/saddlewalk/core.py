@@ -61,6 +61,7 @@ class Core:
     def __init__(self, config: Any) -> None:
         self._context = ffi().new("saddle_context_t *")
         self._input = ffi().new("saddle_input_t *")
+        self._plan = ffi().new("saddle_plan_t *")
         bad_field = library().saddle_config_check(config)
         if bad_field != ffi().NULL:
             raise UserError(describe_bad_field(ffi().string(bad_field).decode(), config))
@@ -83,6 +84,11 @@ class Core:
         if status != library().SADDLE_OK:
             raise ValueError(f"saddle_tick at {time_us} us: status {status}")
         return output
+
+    def plan_at(self, time_us: int) -> Any:
+        """saddle_plan_at(): a saddle_plan_t, not valid outside the span that the core can give."""
+        library().saddle_plan_at(self._context, time_us, self._plan)
+        return self._plan
 
     def score_plan(self, plan: Any) -> Any:
         """saddle_score_plan(): the saddle_scores_t of a planned posture."""

@@ -53,6 +53,7 @@ class Firmware:
             raise UserError(describe_bad_field(ffi().string(bad_field).decode(), config))
         self._context = ffi().new("saddle_context_t *")
         self._bytes = ffi().new("uint8_t[]", library().SADDLE_LCM_MESSAGE_MAX)
+        self._plan = ffi().new("saddle_plan_t *")
         self.output = ffi().new("saddle_output_t *")
         library().saddle_init(self._context, config)
 
@@ -60,6 +61,11 @@ class Firmware:
         """One saddle_tick() with a saddle_input_t; returns the saddle_output_t, which is reused."""
         library().saddle_tick(self._context, inputs, self.output)
         return self.output
+
+    def plan_at(self, time_us: int) -> Any:
+        """saddle_plan_at(): a saddle_plan_t, which is reused; not valid outside the core's span."""
+        library().saddle_plan_at(self._context, time_us, self._plan)
+        return self._plan
 
     def messages(self, utime_us: int) -> dict[str, bytes]:
         """The last output as the host publishes it: channel -> encoded message."""

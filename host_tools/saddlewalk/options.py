@@ -38,7 +38,38 @@ def whole_number_in(low: int, high: int) -> Callable[[str], int]:
     return parse
 
 
+MUJOCO, WINTER = "mujoco", "winter"
+
+
+def add_plant_options(parser: argparse.ArgumentParser, default: str = "pendulum") -> None:
+    """--plant and --body, for chosen_plant()."""
+    parser.add_argument(
+        "--plant",
+        choices=("pendulum", MUJOCO),
+        default=default,
+        help="the wearer: a point mass, or a body with segments, contacts and torque limits in "
+        f"MuJoCo (default {default}): docs/physics.md",
+    )
+    parser.add_argument(
+        "--body",
+        choices=(WINTER, "dm_control"),
+        help=f"of --plant mujoco: average proportions, or dm_control's humanoid (default {WINTER})",
+    )
+
+
 speed = number_in(1e-3, 10, "m/s")
+
+
+def speed_range(text: str) -> tuple[float, float]:
+    """An argparse type: LOW:HIGH in m/s."""
+    low, _, high = text.partition(":")
+    try:
+        found = speed(low), speed(high)
+    except argparse.ArgumentTypeError:
+        found = (1.0, 0.0)
+    if found[0] > found[1]:
+        raise argparse.ArgumentTypeError(f"{text!r} must be LOW:HIGH in m/s such as 0.6:1.2")
+    return found
 
 
 def add_gait_options(parser: argparse.ArgumentParser, default_pace: str | None = None) -> None:

@@ -91,11 +91,12 @@ def test_a_walk_starts_at_the_same_tick_on_the_same_foot(clock, seed):
 
     from saddlewalk.commands.emulate import wearer_of
     from saddlewalk.config import load_config
+    from saddlewalk.emulation.plants import PlantChoice
     from saddlewalk.emulation.wearer import Noise
     from saddlewalk.planning.schedule import schedule_of
 
     config = load_config(argparse.Namespace(height=None, mass=None, config=None))
-    wearer = wearer_of(argparse.Namespace(push=None, seed=seed), config, Noise())
+    wearer = wearer_of(argparse.Namespace(push=None, seed=seed), PlantChoice(), config, Noise())
     spec, url, start = private_udp(), own_lcm(), Start()
     with running_host(f"--can={spec}", f"--lcm={url}", f"--clock={clock}"), open_bus(spec) as bus:
         time.sleep(0.02 * seed)

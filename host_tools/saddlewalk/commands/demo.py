@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.commands.emulate import (
     add_walk_options,
+    clock_of,
     events_printer,
     speeds_of,
     summary,
@@ -26,6 +27,7 @@ from saddlewalk.printable import printable
 if TYPE_CHECKING:
     from saddlewalk.atomic_write import RunFolder
     from saddlewalk.emulation.exoskeleton import Exoskeleton
+    from saddlewalk.emulation.plants import PlantChoice
     from saddlewalk.emulation.wearer import Wearer
     from saddlewalk.logs.recorder import Recorder
     from saddlewalk.logs.soundness import Check
@@ -82,16 +84,19 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    config = load_config(args)
+    from saddlewalk.emulation.plants import chosen_plant
+
+    plant = chosen_plant(args)
+    config = load_config(args, body=plant.fields)
     if args.push is None and args.duration > PUSH_TIME_S:
         args.push = [(PUSH_N_S_KG * config.body_mass_kg, PUSH_TIME_S, PUSH_DIRECTION_DEG)]
     args.clock = _clock(args)
     lcm = _open_lcm(args.lcm)
     with _key_file(args.command_key) as args.command_key:
-        return _walk(args, config, lcm)
+        return _walk(args, plant, config, lcm)
 
 
-def _walk(args: argparse.Namespace, config: Any, lcm: Any) -> int:
+def _walk(args: argparse.Namespace, plant: "PlantChoice", config: Any, lcm: Any) -> int:
     from saddlewalk.atomic_write import RunFolder
     from saddlewalk.emulation.exoskeleton import Exoskeleton
     from saddlewalk.emulation.wearer import Noise
@@ -103,7 +108,7 @@ def _walk(args: argparse.Namespace, config: Any, lcm: Any) -> int:
 
     key = read_key(args.command_key) if args.command_key else None
     by_can = args.firmware == EMULATED
-    wearer = wearer_of(args, config, Noise())
+    wearer = wearer_of(args, plant, config, Noise())
     schedule = schedule_of(speeds_of(args, SPEEDS), math.radians(args.hs_angle))
     firmware = _host if args.firmware == HOST else _controller
     with RunFolder("--out", args.out, run_names()) as run_folder:
@@ -112,7 +117,11 @@ def _walk(args: argparse.Namespace, config: Any, lcm: Any) -> int:
             authenticated = "; commands: authenticated, by CAN" if key else ""
             print(f"CAN: {describe(bus)}; clock: {args.clock}{authenticated}", flush=True)
             observers = [recorder, events_printer(wearer), display]
-            exoskeleton = Exoskeleton(bus, wearer, schedule, lcm, observers, key=key)
+            exoskeleton = Exoskeleton(
+                *(bus, wearer, schedule, lcm, observers),
+                key=key,
+                joint_core=plant.joint_core(config),
+            )
             exoskeleton.run(args.clock, args.duration)
         stops = schedule(args.duration).speed_m_s == 0
         checks = walk_checks(wearer, exoskeleton, stops)
@@ -126,7 +135,7 @@ def _walk(args: argparse.Namespace, config: Any, lcm: Any) -> int:
 def _clock(args: argparse.Namespace) -> str:
     """The chosen clock, or the firmware's default; a controller has lockstep only."""
     if args.firmware == HOST:
-        return args.clock or "realtime"
+        return clock_of(args)
     given = (
         ("clock", args.clock, "lockstep"),
         ("can", args.can, "auto"),

@@ -7,10 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
 from saddlewalk.errors import UserError
-from saddlewalk.options import add_gait_options, number_in, whole_number_in
+from saddlewalk.options import (
+    MUJOCO,
+    add_gait_options,
+    add_plant_options,
+    number_in,
+    whole_number_in,
+)
 from saddlewalk.outputs import add_input
 
 if TYPE_CHECKING:
+    from saddlewalk.emulation.plants import PlantChoice
     from saddlewalk.emulation.wearer import Noise, Push, Wearer
     from saddlewalk.faults.scenario import Occurrence
     from saddlewalk.planning.schedule import Speeds
@@ -61,9 +68,10 @@ def add_walk_options(
     parser.add_argument(
         "--clock",
         choices=("realtime", "lockstep"),
-        default="realtime",
-        help="real time, or as fast as the firmware answers (default realtime)",
+        help="real time, or as fast as the firmware answers (default realtime; with --plant "
+        "mujoco lockstep, and no other)",
     )
+    add_plant_options(parser)
     add_gait_options(parser, default_pace=pace)
     add_body_options(parser)
     parser.add_argument(
@@ -109,6 +117,7 @@ def push_text(text: str) -> tuple[float, float, float]:
 
 def run(args: argparse.Namespace) -> int:
     from saddlewalk.emulation.exoskeleton import Exoskeleton
+    from saddlewalk.emulation.plants import chosen_plant
     from saddlewalk.emulation.wearer import Noise
     from saddlewalk.faults.live import faulty
     from saddlewalk.planning.schedule import schedule_of
@@ -117,7 +126,10 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.transport.lcmbus import open_lcm
 
     key = read_key(args.command_key) if args.command_key else None
-    wearer = wearer_of(args, load_config(args), Noise().scaled(args.noise_scale))
+    plant = chosen_plant(args)
+    args.clock = clock_of(args)
+    config = load_config(args, body=plant.fields)
+    wearer = wearer_of(args, plant, config, Noise().scaled(args.noise_scale))
     schedule = schedule_of(speeds_of(args, [(0.0, SPEED_M_S)]), math.radians(args.hs_angle))
     lcm = open_lcm(args.lcm)
     occurrences = _occurrences(args)
@@ -127,7 +139,11 @@ def run(args: argparse.Namespace) -> int:
         ways = faulty(bus, lcm, occurrences, args.seed) if occurrences else (bus, lcm)
         start = "start saddlewalk-host there with the same --clock and --lcm"
         exoskeleton = Exoskeleton(
-            ways[0], wearer, schedule, ways[1], [events], fresh=False, if_silent=start, key=key
+            *(ways[0], wearer, schedule, ways[1], [events]),
+            fresh=False,
+            if_silent=start,
+            key=key,
+            joint_core=plant.joint_core(config),
         )
         exoskeleton.run(args.clock, args.duration)
     print(summary(wearer, exoskeleton))
@@ -155,9 +171,20 @@ def _occurrences(args: argparse.Namespace) -> "list[Occurrence]":
     return occurrences
 
 
-def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer":
+def clock_of(args: argparse.Namespace) -> str:
+    """Of --clock; MuJoCo's time is its own."""
+    if args.plant != MUJOCO:
+        return args.clock or "realtime"
+    if args.clock == "realtime":
+        raise UserError(f"--clock realtime: not with --plant {MUJOCO}, leave it out")
+    return "lockstep"
+
+
+def wearer_of(
+    args: argparse.Namespace, plant: "PlantChoice", config: Any, noise: "Noise"
+) -> "Wearer":
     """The wearer of `args` with the body that the firmware's configuration describes."""
-    from saddlewalk.emulation.wearer import Body, Push, Wearer
+    from saddlewalk.emulation.wearer import Push
 
     pushes = tuple(Push(*push) for push in args.push or ())
     for push in pushes:
@@ -166,8 +193,7 @@ def wearer_of(args: argparse.Namespace, config: Any, noise: "Noise") -> "Wearer"
                 f"--push at {push.time_s:g} s: give a time before the end, --duration "
                 f"{args.duration:g} s"
             )
-    body = Body.of(config)
-    return Wearer(body, noise, pushes, args.seed, right_ahead_m=RIGHT_AHEAD_M)
+    return plant.wearer(config, noise, pushes, args.seed, right_ahead_m=RIGHT_AHEAD_M)
 
 
 def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.atomic_write import write_text
 from saddlewalk.config import add_body_options, given_fields, load_config
-from saddlewalk.options import add_campaign_options, whole_number_in
+from saddlewalk.options import add_campaign_options, add_plant_options, speed_range, whole_number_in
 from saddlewalk.outputs import OutputFolder, add_input, add_output
 from saddlewalk.printable import printable
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from saddlewalk.evaluation.gait_trials import GaitTrial
     from saddlewalk.evaluation.recorded_falls import Scored as ScoredWalk
     from saddlewalk.evaluation.scoring import Score
-    from saddlewalk.evaluation.walks import Walk
+    from saddlewalk.evaluation.walks import Setting, Walk
 
 WALKS = 1000
 KINDS_DRAWN = ("misses", "false-alarms")
@@ -64,7 +64,15 @@ def add_parser(subparsers: Any) -> None:
         metavar="N",
         help=f"pushed walks of each kind of emulated wearer (default {WALKS}; with --falls none)",
     )
+    parser.add_argument(
+        "--speeds",
+        type=speed_range,
+        default="0.5:1.6",
+        metavar="LOW:HIGH",
+        help="of the emulated walks, m/s (default 0.5:1.6)",
+    )
     add_campaign_options(parser)
+    add_plant_options(parser)
     add_input(
         parser,
         "--falls",
@@ -99,15 +107,18 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
+    from saddlewalk.emulation.plants import chosen_plant
     from saddlewalk.evaluation.cross_validation import leave_one_out, table
     from saddlewalk.evaluation.gait_trials import score_folder
+    from saddlewalk.evaluation.walks import Setting
 
     console = Console(stderr=args.json == "-")
-    config = load_config(args)
+    plant = chosen_plant(args)
+    config = load_config(args, body=plant.fields)
     trials = score_folder(args.gait, config) if args.gait else []
     parts = []
     if args.walks or not args.falls:
-        parts.append(_emulate(console, args, config, trials))
+        parts.append(_emulate(console, args, Setting(plant, args.speeds), config, trials))
     if args.falls:
         parts.append(_score_falls(args))
     results = {name: figures for part in parts for name, figures in part.figures.items()}
@@ -133,7 +144,11 @@ def _cross_validation(found: "CrossValidation | None") -> dict[str, Any]:
 
 
 def _emulate(
-    console: "Console", args: argparse.Namespace, config: Any, trials: Sequence["GaitTrial"]
+    console: "Console",
+    args: argparse.Namespace,
+    setting: "Setting",
+    config: Any,
+    trials: Sequence["GaitTrial"],
 ) -> Part:
     """Run the walks and print the results of the emulated wearer, by kind."""
     from saddlewalk.evaluation.detection import detection_of, push_limits, recovery_benefit
@@ -143,7 +158,7 @@ def _emulate(
 
     count = args.walks or WALKS
     console.print(f"seed {args.seed}, {count} pushed walks of each kind, {args.jobs} jobs")
-    walks = _walk(args, count, config)
+    walks = _walk(args, count, setting, config)
     by_kind = {kind: [walk for walk in walks if walk.trial.kind == kind] for kind in KINDS}
     detections = {kind: detection_of(by_kind[kind]) for kind in KINDS}
     benefit, limits = recovery_benefit(walks), push_limits(walks)
@@ -154,7 +169,7 @@ def _emulate(
     }
     _print_detection(console, detections)
     _print_areas(console, detections)
-    _print_limits(console, limits, benefit)
+    _print_limits(console, limits, benefit, setting.speeds_m_s)
     _print_confusions(console, confusions)
     result = {
         "seed": args.seed,
@@ -169,10 +184,11 @@ def _emulate(
         "gait": [asdict(trial) for trial in trials],
     }
     given = {name: str(value) for name, value in given_fields(args).items()}
-    scores = {f"emulated_{kind}": _scores_by_inputs(by_kind[kind]) for kind in KINDS}
+    name = setting.plant.body or "emulated"
+    scores = {f"{name}_{kind}": _scores_by_inputs(by_kind[kind]) for kind in KINDS}
     return Part(
         {name: walker_figures(each, given) for name, each in scores.items()},
-        {name: each["exact"] for name, each in scores.items()},
+        {name: each["exact"] for name, each in scores.items() if "exact" in each},
         functools.partial(_write_emulated, result, walks, config),
     )
 
@@ -180,7 +196,8 @@ def _emulate(
 def _scores_by_inputs(walks: Sequence["Walk"]) -> dict[str, list["Score"]]:
     from saddlewalk.evaluation.scoring import INPUTS
 
-    return {name: [part for walk in walks for part in walk.scores[name]] for name in INPUTS}
+    given = [name for name in INPUTS if name in walks[0].scores]
+    return {name: [part for walk in walks for part in walk.scores[name]] for name in given}
 
 
 def _score_falls(args: argparse.Namespace) -> Part:
@@ -214,12 +231,12 @@ def _score_falls(args: argparse.Namespace) -> Part:
     )
 
 
-def _walk(args: argparse.Namespace, count: int, config: Any) -> list["Walk"]:
+def _walk(args: argparse.Namespace, count: int, setting: "Setting", config: Any) -> list["Walk"]:
     from saddlewalk.evaluation.walks import KINDS, calm_walks, evaluate
 
     total = len(KINDS) * (count + calm_walks(count))
     with _progress("walks", total) as done:
-        return evaluate(args.seed, count, config, args.jobs, done)
+        return evaluate(args.seed, count, config, args.jobs, done, setting)
 
 
 @contextlib.contextmanager
@@ -283,11 +300,14 @@ def _print_areas(console: "Console", detections: dict[str, "Detection"]) -> None
 
 
 def _print_limits(
-    console: "Console", limits: dict[str, dict[int, float]], benefit: dict[str, float]
+    console: "Console",
+    limits: dict[str, dict[int, float]],
+    benefit: dict[str, float],
+    speeds_m_s: tuple[float, float],
 ) -> None:
-    from saddlewalk.evaluation.walks import DIRECTIONS, SPEED_BINS, SPEEDS_M_S
+    from saddlewalk.evaluation.walks import DIRECTIONS, SPEED_BINS
 
-    low, high = SPEEDS_M_S
+    low, high = speeds_m_s
     for kind, cells in limits.items():
         table = _table(f"Push that half survive, {kind} steps, N s", "m/s", *DIRECTIONS)
         for bin_ in range(SPEED_BINS):

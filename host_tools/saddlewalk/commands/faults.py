@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
-from saddlewalk.options import add_campaign_options, whole_number_in
+from saddlewalk.errors import UserError
+from saddlewalk.options import add_campaign_options, add_plant_options, whole_number_in
 from saddlewalk.outputs import add_input
 
 if TYPE_CHECKING:
+    from saddlewalk.emulation.plants import PlantChoice
     from saddlewalk.faults.campaign import Outcome, Row
     from saddlewalk.faults.scenario import Scenario
 
@@ -48,6 +50,7 @@ def add_parser(subparsers: Any) -> None:
         f"(default {LIVE_RUNS})",
     )
     add_campaign_options(parser)
+    add_plant_options(parser)
     add_body_options(parser)
     parser.set_defaults(run=run)
 
@@ -56,14 +59,18 @@ def run(args: argparse.Namespace) -> int:
     """1: an output was unsafe."""
     from rich.console import Console
 
+    from saddlewalk.emulation.plants import chosen_plant
     from saddlewalk.faults.campaign import rows_of
     from saddlewalk.faults.scenario import read_scenario
     from saddlewalk.paths import CHECKOUT
 
-    config = load_config(args)
+    plant = chosen_plant(args)
+    if plant.is_mujoco and args.live:
+        raise UserError(f"--live: walks in real time, not with --plant {args.plant}")
+    config = load_config(args, body=plant.fields)
     scenario = read_scenario(args.scenario or CHECKOUT / "examples/faults.toml")
     console = Console(width=None if sys.stdout.isatty() else FILE_WIDTH)
-    outcomes = _in_lockstep(args, scenario, config)
+    outcomes = _in_lockstep(args, scenario, config, plant)
     console.print(_table(rows_of(outcomes), "In lockstep"))
     if args.live:
         live = _live(args, scenario, config)
@@ -73,11 +80,13 @@ def run(args: argparse.Namespace) -> int:
     return 1 if any(outcome.violations for outcome in outcomes) else 0
 
 
-def _in_lockstep(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["Outcome"]:
+def _in_lockstep(
+    args: argparse.Namespace, scenario: "Scenario", config: Any, plant: "PlantChoice"
+) -> list["Outcome"]:
     from saddlewalk.faults.campaign import campaign
 
     with _progress("walks", args.runs * len(scenario.faults)) as progress:
-        return campaign(scenario, args.runs, args.seed, config, args.jobs, progress)
+        return campaign(scenario, args.runs, args.seed, config, args.jobs, progress, plant)
 
 
 def _live(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["Outcome"]:

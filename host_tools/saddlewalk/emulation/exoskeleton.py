@@ -12,9 +12,11 @@ import can
 
 from saddlewalk.contract import LEFT, RIGHT, STAND, STANDING, TICK_S, WALK
 from saddlewalk.emulation.paced_ticks import WAKE_UP_S, PacedTicks
+from saddlewalk.emulation.plans import planned
 from saddlewalk.emulation.punctuality import Punctuality
-from saddlewalk.emulation.wearer import STEP_S, Measurement, Plan, RecoveryStep, Wearer
+from saddlewalk.emulation.wearer import STEP_S, Measurement, Plan, PlanAt, RecoveryStep, Wearer
 from saddlewalk.errors import UserError
+from saddlewalk.lockstep_host import LockstepHost
 from saddlewalk.planning.schedule import Schedule
 from saddlewalk.ticks import PLAN_MESSAGES, FrameBus, Messages, TickReader, next_tick
 from saddlewalk.transport.authentication import Authenticator
@@ -53,7 +55,7 @@ def plan_of(messages: Messages) -> Plan | None:
     step, swing, landing = messages["PLAN_STEP"], messages["PLAN_SWING"], messages["PLAN_LANDING"]
     com, velocity = messages["PLAN_COM"], messages["PLAN_COM_VELOCITY"]
     left, right = messages["PLAN_LEFT"], messages["PLAN_RIGHT"]
-    events = messages["PLAN_EVENTS"]
+    events, pitch = messages["PLAN_EVENTS"], messages["PLAN_PITCH"]
     numbers = [value for part in PLAN_MESSAGES for value in messages[part].values()]
     if not step["VALID"] or not all(map(math.isfinite, numbers)):
         return None
@@ -72,6 +74,8 @@ def plan_of(messages: Messages) -> Plan | None:
         time_to_landing_s=events["TIME_TO_TOE_OFF"],
         landing_m=complex(landing["X"], landing["Y"]),
         leg_length_m=landing["LEG_LENGTH"],
+        height_m=com["Z"],
+        pitch_rad=(pitch["LEFT"], pitch["RIGHT"]),
         recovery=_recovery_of(messages),
     )
 
@@ -91,6 +95,8 @@ class Exoskeleton:
     fresh: the firmware was started for this walk and has not received anything yet.
     if_silent: what the user can do when no firmware answers.
     key: authenticates the commands, which then go by CAN alone.
+    joint_core: of a controller that drives the joints between two ticks. It hears the same frames,
+    so in lockstep it has the firmware's plan at every instant, and may do without the bus.
     """
 
     def __init__(
@@ -103,6 +109,7 @@ class Exoskeleton:
         fresh: bool = True,
         if_silent: str = "",
         key: bytes | None = None,
+        joint_core: LockstepHost | None = None,
     ) -> None:
         self.reader = TickReader()
         self.frames_sent = 0
@@ -115,6 +122,7 @@ class Exoskeleton:
         self._fresh, self._if_silent = fresh, if_silent
         self._sender = Sender()
         self._authenticator = None if key is None else Authenticator(key)
+        self._joint_core = joint_core
         self._codes_demanded = False
         self._begun = False
         self._ignored_ticks = 0  # ticks in a row
@@ -208,10 +216,23 @@ class Exoskeleton:
             raise self._wrong_response()
         self.health = messages["HEALTH"]
         self.mode = plan.mode if plan else None
-        self._wearer.follow(plan)
+        self._wearer.follow(plan, self._plan_at(plan))
         tick = Tick(self._wearer.time_s, messages, plan)
         for observer in self._observers:
             observer.tick(tick, self._wearer)
+
+    def _plan_at(self, plan: Plan | None) -> PlanAt | None:
+        """That of the joint controller's core, until the next tick; it must agree with `plan`."""
+        core = self._joint_core
+        if core is None or plan is None:
+            return None
+        own = planned(core.plan_at(0.0))
+        if own is None or not own.agrees(plan):
+            raise UserError(
+                f"the firmware on {self._bus.channel_info} plans otherwise than the joint "
+                "controller, which has heard the same: start it anew, with the same configuration"
+            )
+        return lambda since_s: planned(core.plan_at(since_s))
 
     def _wrong_response(self) -> UserError:
         options = "--command-key" if self._codes_demanded else "--clock and --lcm"
@@ -240,6 +261,8 @@ class Exoskeleton:
         except can.CanOperationError:  # no room: lost, as the firmware sees by its age
             return
         self.frames_sent += 1
+        if self._joint_core:
+            self._joint_core.take(frame)
         for observer in self._observers:
             observer.frame(frame)
 

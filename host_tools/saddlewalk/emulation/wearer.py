@@ -11,6 +11,7 @@ y from the first walking line, z from the ground.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +25,7 @@ SPEED_MIN_M_S = 0.01  # slower steps last as long as if so fast
 REST_SHARE = 1 - 2 / math.pi  # of the way to the middle, from the foot over which a walk ends
 NEARBY_M = 0.08 + 0.05j  # a recovery step this close to the planned one is ignored
 IN_NEED_M = 0.13 + 0.07j  # the wearer hurries if the XCoM is off the planned one by more
+BUS_ROUNDING_M = 1e-3  # of a point on CAN, at most
 ARRIVED_M = 0.02  # within this distance a step has reached its place
 
 
@@ -130,7 +132,15 @@ class Plan:
     time_to_landing_s: float  # not planned for a last swing
     landing_m: complex
     leg_length_m: float
+    height_m: float  # of the CoM
+    pitch_rad: tuple[float, float]  # of the soles, positive heel up
     recovery: RecoveryStep | None = None  # None: no place helps, or nothing to compare with
+
+    def agrees(self, other: "Plan") -> bool:
+        """The same but for what a bus rounds."""
+        points = zip((self.com_m, *self.feet_m), (other.com_m, *other.feet_m), strict=True)
+        same = (self.mode, self.support) == (other.mode, other.support)
+        return same and all(abs(one - another) < BUS_ROUNDING_M for one, another in points)
 
     @property
     def both_feet_stand(self) -> bool:
@@ -155,6 +165,9 @@ class Plan:
     def step_s(self) -> float:
         """Duration of a whole step at the present speed."""
         return self.step_length_m / self.speed_m_s
+
+
+PlanAt = Callable[[float], Plan | None]  # so many seconds after a tick, up to the next one
 
 
 @dataclass(frozen=True)
@@ -314,8 +327,11 @@ class Wearer:
         """Of the plan's frame, in the world."""
         return self._origin_m
 
-    def follow(self, plan: Plan | None) -> None:
-        """Take the newest plan; None while there is none."""
+    def follow(self, plan: Plan | None, plan_at: PlanAt | None = None) -> None:
+        """Take the newest plan; None while there is none.
+
+        plan_at: the plan until the next tick, of which this wearer needs nothing.
+        """
         before, interval_s = self._plan, self._plan_age_s
         self._plan, self._plan_age_s = plan, 0.0
         if plan is None or self.fallen:

@@ -27,9 +27,12 @@ Figures = Mapping[str, Any]
 
 
 def walker_figures(scores: Mapping[str, Sequence[Score]], config: Mapping[str, str]) -> Figures:
-    """Those on exact inputs; those on the other INPUTS under their names. scores: by INPUTS."""
-    by_inputs = {name: figures(scores[name], config) for name in INPUTS}
-    return {**by_inputs.pop("exact"), **by_inputs}
+    """Those on exact inputs, if any; those on the other INPUTS under their names.
+
+    scores: by INPUTS.
+    """
+    by_inputs = {name: figures(scores[name], config) for name in INPUTS if name in scores}
+    return {**by_inputs.pop("exact", {}), **by_inputs}
 
 
 def people_figures(trials: Sequence[GaitTrial]) -> Figures:
@@ -46,8 +49,10 @@ def tables(results: Mapping[str, Figures], inputs: str) -> list[Table]:
     shown = {
         name: result if inputs == "exact" else result[inputs]
         for name, result in results.items()
-        if inputs == "exact" or inputs in result
+        if inputs in result or (inputs == "exact" and "calm" in result)
     }
+    if not shown:
+        return []
     announced = _table(f"Falls announced, {TITLES[inputs]}", shown)
     for label, cell in ROWS if inputs == "exact" else ROWS[:BRIEF]:
         cells = [_cell(cell, result) for result in shown.values()]

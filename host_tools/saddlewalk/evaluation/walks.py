@@ -18,6 +18,7 @@ import numpy as np
 from saddlewalk.contract import STANDING, TICK_S, WALKING
 from saddlewalk.core import ffi, library
 from saddlewalk.emulation import closed_loop
+from saddlewalk.emulation.plants import POINT_MASS, PlantChoice
 from saddlewalk.emulation.wearer import Body, Noise, Push, Wearer
 from saddlewalk.evaluation import scoring
 from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_margin_m
@@ -91,6 +92,17 @@ class Trial:
 
 
 @dataclass(frozen=True)
+class Setting:
+    """What is common to all walks: which wearer walks, and how fast."""
+
+    plant: PlantChoice = POINT_MASS
+    speeds_m_s: tuple[float, float] = SPEEDS_M_S
+
+
+POINT_MASS_WALKS = Setting()
+
+
+@dataclass(frozen=True)
 class Course:
     """How a walk went, up to the fall or the end."""
 
@@ -141,15 +153,20 @@ def course_of(seed: int, index: int, kind: str, config: Any) -> tuple[Trial, Cou
 
 
 def evaluate(
-    seed: int, walks: int, config: Any, jobs: int, progress: Callable[[int], None]
+    seed: int,
+    walks: int,
+    config: Any,
+    jobs: int,
+    progress: Callable[[int], None],
+    setting: Setting = POINT_MASS_WALKS,
 ) -> list[Walk]:
     """Both kinds of wearer, pushed `walks` times each and unperturbed; progress(walks done).
 
     The same walks in the same order, however many jobs share the work.
     """
     image = bytes(ffi().buffer(config))
-    tasks = [(seed, chain, kind, image) for kind in KINDS for chain in _chains(walks)]
-    tasks += [(seed, [-1 - k], kind, image) for kind in KINDS for k in range(calm_walks(walks))]
+    chains = _chains(walks) + [[-1 - k] for k in range(calm_walks(walks))]
+    tasks = [(seed, chain, kind, image, setting) for kind in KINDS for chain in chains]
     done: list[Walk] = []
     with ProcessPoolExecutor(jobs) as pool:
         futures = [pool.submit(_work, *task) for task in tasks]
@@ -168,21 +185,25 @@ def calm_walks(walks: int) -> int:
     return max(math.ceil(walks * CALM_SHARE), 1)
 
 
-def _work(seed: int, chain: list[int], kind: str, image: bytes) -> list[Walk]:
+def _work(seed: int, chain: list[int], kind: str, image: bytes, setting: Setting) -> list[Walk]:
     config = ffi().new("saddle_config_t *")
     ffi().memmove(config, image, len(image))
-    return [
-        evaluated_walk(trial, course, run(trial, config, EXACT_SENSORS))
-        for trial, course in _walk_chain(seed, chain, kind, config)
-    ]
+    walks = []
+    for trial, course in _walk_chain(seed, chain, kind, config, setting):
+        # A body's physics takes seconds for a walk: it walks once.
+        again = None if setting.plant.is_mujoco else run(trial, config, EXACT_SENSORS)
+        walks.append(evaluated_walk(trial, course, again))
+    return walks
 
 
-def run(trial: Trial, config: Any, noise: Noise | None = None) -> Course:
+def run(
+    trial: Trial, config: Any, noise: Noise | None = None, plant: PlantChoice = POINT_MASS
+) -> Course:
     """noise: the wearer's own by default."""
     pushed = trial.impulse_n_s > 0
     push = Push(trial.impulse_n_s, trial.push_time_s, trial.direction_deg)
-    wearer = Wearer(
-        Body.of(config),
+    wearer = plant.wearer(
+        config,
         noise,
         pushes=(push,) if pushed else (),
         seed=trial.wearer_seed,
@@ -259,8 +280,8 @@ def _add_baselines(ticks: np.ndarray, config: Any) -> None:
     ticks["hof_xcom_m"] = hof_margin_m(xcom_m, cop_m, contact, half_m)
 
 
-def evaluated_walk(trial: Trial, course: Course, exact: Course) -> Walk:
-    """The evaluation of a walk, and of the same walk with exact sensors."""
+def evaluated_walk(trial: Trial, course: Course, exact: Course | None) -> Walk:
+    """The evaluation of a walk, and of the same walk with exact sensors, if it was made."""
     ticks, fell_at_s = course.ticks, course.fell_at_s
     time_s, level = ticks["time_s"], ticks["level"]
     pushed = np.full(len(ticks), trial.impulse_n_s > 0) & (time_s >= trial.push_time_s)
@@ -280,14 +301,21 @@ def evaluated_walk(trial: Trial, course: Course, exact: Course) -> Walk:
         walking_levels=_counts(level[walking]),
         walking_reasons=_counts(ticks["reason"][walking]),
         moving_levels=_counts(level[moving]),
-        scores={
-            "exact": [score(*part) for part in exact.parts],
-            "noise": [score(*part) for part in course.parts],
-            "one_tick_late": [
-                score(walk, one_tick_late(announced)) for walk, announced in exact.parts
-            ],
-        },
+        scores=_scores(course, exact),
     )
+
+
+def _scores(course: Course, exact: Course | None) -> dict[str, list[Score]]:
+    """In the order of INPUTS."""
+    noise = [score(*part) for part in course.parts]
+    if exact is None:
+        return {"noise": noise}
+    late = [(walk, one_tick_late(announced)) for walk, announced in exact.parts]
+    return {
+        "exact": [score(*part) for part in exact.parts],
+        "noise": noise,
+        "one_tick_late": [score(*part) for part in late],
+    }
 
 
 def _least(ticks: np.ndarray) -> dict[str, float]:
@@ -310,14 +338,18 @@ def _chains(walks: int) -> list[list[int]]:
 
 
 def _walk_chain(
-    seed: int, chain: list[int], kind: str, config: Any
+    seed: int,
+    chain: list[int],
+    kind: str,
+    config: Any,
+    setting: Setting = POINT_MASS_WALKS,
 ) -> Iterator[tuple[Trial, Course]]:
     stair_n_s, factor, fell_before = FIRST_PUSH_M_S * config.body_mass_kg, STAIR, None
     for index in chain:
-        trial = draw(seed, index, kind, config.body_mass_kg)
+        trial = draw(seed, index, kind, config.body_mass_kg, setting.speeds_m_s)
         if trial.cell >= 0:
             trial = replace(trial, impulse_n_s=stair_n_s)
-        course = run(trial, config)
+        course = run(trial, config, plant=setting.plant)
         yield trial, course
         fell = math.isfinite(course.fell_at_s)
         factor = FINE_STAIR if fell_before not in (None, fell) else factor
@@ -325,7 +357,13 @@ def _walk_chain(
         fell_before = fell
 
 
-def draw(seed: int, index: int, kind: str, mass_kg: float) -> Trial:
+def draw(
+    seed: int,
+    index: int,
+    kind: str,
+    mass_kg: float,
+    speeds_m_s: tuple[float, float] = SPEEDS_M_S,
+) -> Trial:
     """Walk `index`, but for the push of a staircase; an index below 0: no push."""
     random = np.random.default_rng([seed, abs(index), int(index < 0)])
     speed, direction, time, hardness = random.random(4).tolist()
@@ -342,7 +380,7 @@ def draw(seed: int, index: int, kind: str, mass_kg: float) -> Trial:
         kind=kind,
         index=index,
         cell=cell,
-        speed_m_s=SPEEDS_M_S[0] + speed * (SPEEDS_M_S[1] - SPEEDS_M_S[0]),
+        speed_m_s=speeds_m_s[0] + speed * (speeds_m_s[1] - speeds_m_s[0]),
         direction_deg=side * (low_deg + direction * (high_deg - low_deg)),
         push_time_s=PUSH_FROM_S + time * (PUSH_TO_S - PUSH_FROM_S),
         impulse_n_s=0.0 if index < 0 else hardness * ANY_PUSH_M_S * mass_kg,

@@ -18,7 +18,9 @@ from saddlewalk import core
 from saddlewalk.contract import OUTPUT_FRAMES, STANDING, TICK_S
 from saddlewalk.emulation.closed_loop import STEPS_A_TICK
 from saddlewalk.emulation.exoskeleton import plan_of
-from saddlewalk.emulation.wearer import Body, Wearer
+from saddlewalk.emulation.plans import planned
+from saddlewalk.emulation.plants import POINT_MASS, PlantChoice
+from saddlewalk.emulation.wearer import Plan, Wearer
 from saddlewalk.faults.checker import STATES, Checker
 from saddlewalk.faults.scenario import MEASURED, Fault, Line, Occurrence, Scenario, draw
 from saddlewalk.firmware import config_of, ffi, library
@@ -56,8 +58,9 @@ class Device:
         self._output = ffi().new("saddle_output_t *")
         self._health = ffi().new("saddle_wire_health_t *")
         self._frames = ffi().new("saddle_frame_t[]", OUTPUT_FRAMES)
+        self._plan = ffi().new("saddle_plan_t *")
         self._reader = TickReader()
-        self._ticks = 0
+        self._ticks = self._tick_us = 0
         lib.saddle_init(self._context, config_of(config))
         lib.saddle_inbox_init(self._inbox, lib.SADDLE_SOURCE_NONE)
 
@@ -73,6 +76,7 @@ class Device:
     def tick(self, time_us: int) -> Messages:
         """One tick, as sent on CAN."""
         lib, output = library(), self._output
+        self._tick_us = time_us
         lib.saddle_tick(self._context, lib.saddle_inbox_read(self._inbox, time_us), output)
         self._publish_health()
         lib.saddle_wire_encode_output(output, self._health, self._ticks % 16, self._frames)
@@ -85,6 +89,12 @@ class Device:
             messages = self._reader.feed(message)
         assert messages is not None  # the frames of one output are a whole tick
         return messages
+
+    def plan_at(self, since_s: float) -> Plan | None:
+        """The plan so long after the last tick, as a controller of the joints has it."""
+        time_us = self._tick_us + round(since_s * 1e6)
+        library().saddle_plan_at(self._context, time_us, self._plan)
+        return planned(self._plan)
 
     def _publish_health(self) -> None:
         health, inbox, receiver = self._health, self._inbox, self._inbox.receiver
@@ -102,7 +112,12 @@ class Device:
 
 
 def run(
-    scenario: Scenario, index: int, number: int, seed: int, config: Any
+    scenario: Scenario,
+    index: int,
+    number: int,
+    seed: int,
+    config: Any,
+    plant: PlantChoice = POINT_MASS,
 ) -> tuple[Outcome, list[Messages]]:
     """Walk `number` with the scenario's fault `index`, in lockstep; and the ticks' messages."""
     random = np.random.default_rng([seed, index, number])
@@ -110,7 +125,7 @@ def run(
     occurrence = draw(fault, random)
     line = Line([occurrence], random)
     asked = EndlessWalk(float(random.uniform(*scenario.speed_m_s)))
-    wearer = Wearer(Body.of(config), seed=int(random.integers(2**32)))
+    wearer = plant.wearer(config, seed=int(random.integers(2**32)))
     device, sender = Device(config), wire.Sender()
     checker = Checker(config, core.body_of(config), occurrence.begin_s)
     history = []
@@ -127,7 +142,7 @@ def run(
             history.append(device.tick(round(clock_s * 1e6)))
             checker.begin_s = max(occurrence.begin_s, _onset_s(occurrence, line))
             checker.tick(history[-1], walk_s, clock_s)
-            wearer.follow(plan_of(history[-1]))
+            wearer.follow(plan_of(history[-1]), device.plan_at)
         for _ in range(STEPS_A_TICK):
             wearer.step()
     return outcome_of(fault, False, checker, wearer), history
@@ -193,12 +208,13 @@ def campaign(
     config: Any,
     jobs: int,
     progress: Callable[[int], None],
+    plant: PlantChoice = POINT_MASS,
 ) -> list[Outcome]:
     """`runs` walks with each fault, in lockstep; the same whatever `jobs`. progress(walks done)."""
     image = bytes(core.ffi().buffer(config))
     with ProcessPoolExecutor(jobs) as pool:
         futures = {
-            pool.submit(_work, scenario, index, runs, seed, image): index
+            pool.submit(_work, scenario, index, runs, seed, image, plant): index
             for index in range(len(scenario.faults))
         }
         done: dict[int, list[Outcome]] = {}
@@ -212,10 +228,12 @@ def campaign(
     return [outcome for index in sorted(done) for outcome in done[index]]
 
 
-def _work(scenario: Scenario, index: int, runs: int, seed: int, image: bytes) -> list[Outcome]:
+def _work(
+    scenario: Scenario, index: int, runs: int, seed: int, image: bytes, plant: PlantChoice
+) -> list[Outcome]:
     config = core.ffi().new("saddle_config_t *")
     core.ffi().memmove(config, image, len(image))
-    return [run(scenario, index, number, seed, config)[0] for number in range(runs)]
+    return [run(scenario, index, number, seed, config, plant)[0] for number in range(runs)]
 
 
 @dataclass(frozen=True)

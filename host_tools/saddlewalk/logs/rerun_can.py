@@ -9,16 +9,11 @@ from typing import Any
 
 import can
 
-from saddlewalk.contract import TICK_US
-from saddlewalk.core import AGE_NEVER_US
 from saddlewalk.errors import UserError
-from saddlewalk.firmware import Firmware, config_of, ffi, library
+from saddlewalk.lockstep_host import INPUTS, LockstepHost, is_classic
 from saddlewalk.logs.rerun import Difference, Report
 from saddlewalk.ticks import MESSAGES
 from saddlewalk.transport import wire
-
-NO_IDENTIFIER = 0xFFFFFFFF  # what the host makes of a frame that is not a classic data frame
-_INPUTS = "COMMAND MEASURED_COM MEASURED_LEFT MEASURED_RIGHT".split()
 
 
 def rerun_can(frames: Iterable[can.Message], config: Any) -> Report:
@@ -27,7 +22,7 @@ def rerun_can(frames: Iterable[can.Message], config: Any) -> Report:
     Raises UserError if no tick of it can be.
     """
     report = Report(source="CAN", runs=1)
-    node, answer = _Node(config), {}
+    node, answer = LockstepHost(config), {}
     for frame in frames:
         name = wire.message_name(frame.arbitration_id) if _is_ours(frame) else None
         if name not in MESSAGES:
@@ -46,82 +41,18 @@ def rerun_can(frames: Iterable[can.Message], config: Any) -> Report:
 
 def _is_ours(frame: can.Message) -> bool:
     """A classic data frame of our length; any other is the host's to refuse."""
-    return _is_classic(frame) and len(frame.data) == wire.FRAME_LENGTH
+    return is_classic(frame) and len(frame.data) == wire.FRAME_LENGTH
 
 
-def _is_classic(frame: can.Message) -> bool:
-    return not (
-        frame.is_extended_id or frame.is_remote_frame or frame.is_error_frame or frame.is_fd
-    )
-
-
-def _nothing(report: Report, node: "_Node") -> str:
+def _nothing(report: Report, node: LockstepHost) -> str:
     if report.gaps:
         return report.gaps[0]
     if node.inputs == 0:
-        return f"it has none of the frames {', '.join(_INPUTS)} of which a run is recomputed"
+        return f"it has none of the frames {', '.join(INPUTS)} of which a run is recomputed"
     return "it has no whole set of measurements with the HEALTH that answers it"
 
 
-class _Node:
-    """The host process in lockstep: takes frames, ticks when a set of measurements is whole."""
-
-    def __init__(self, config: Any) -> None:
-        self.firmware = Firmware(config_of(config))
-        self.ticks = 0  # computed
-        self.waiting = 0  # of them, not yet compared
-        self.inputs = 0  # frames
-        self._receiver = ffi().new("saddle_wire_receiver_t *")
-        self._input = ffi().new("saddle_input_t *")
-        self._set: set[int] = set()
-        self._set_counter = 0
-        self._command_us: int | None = None  # the time of the tick after it
-
-    def take(self, frame: can.Message) -> None:
-        lib = library()
-        identifier = frame.arbitration_id if _is_classic(frame) else NO_IDENTIFIER
-        data = bytes(frame.data)
-        message = lib.saddle_wire_accept(self._receiver, identifier, data, len(data))
-        if message == lib.SADDLE_WIRE_NONE:
-            return
-        self.inputs += 1
-        if message == lib.SADDLE_WIRE_COMMAND:
-            self._take_command(data)
-        elif message != lib.SADDLE_WIRE_COMMAND_CODE:
-            self._take_measured(message, data)
-
-    def _take_command(self, data: bytes) -> None:
-        command = ffi().new("saddle_command_t *")
-        library().saddle_wire_decode_command(data, command)
-        if library().saddle_command_usable(command):
-            self._input.command = command[0]
-            self._command_us = self.ticks * TICK_US
-
-    def _take_measured(self, message: int, data: bytes) -> None:
-        lib = library()
-        lib.saddle_wire_decode_measured(
-            message, data, ffi().addressof(self._input[0], "measurement")
-        )
-        counter = lib.saddle_wire_counter(data)
-        if counter != self._set_counter:
-            self._set, self._set_counter = set(), counter
-        self._set.add(message)
-        if len(self._set) == len(_INPUTS) - 1:
-            self._set = set()
-            self._tick()
-
-    def _tick(self) -> None:
-        time_us = self.ticks * TICK_US
-        self._input.time_us = time_us
-        received_us = self._command_us
-        age_us = AGE_NEVER_US if received_us is None else time_us - received_us
-        self._input.command_age_us = age_us
-        self.firmware.tick(self._input)
-        self.ticks += 1
-        self.waiting += 1
-
-
-def _compare(report: Report, node: _Node, answer: dict[str, bytes]) -> bool:
+def _compare(report: Report, node: LockstepHost, answer: dict[str, bytes]) -> bool:
     """One tick's frames. False: what follows cannot be computed, which the report then states."""
     tick = node.ticks - 1
     recorded = wire.raw_signals(wire.identifier("HEALTH"), answer["HEALTH"])
@@ -144,7 +75,7 @@ def _compare(report: Report, node: _Node, answer: dict[str, bytes]) -> bool:
     return True
 
 
-def _in_lockstep(report: Report, node: _Node, counter: int) -> bool:
+def _in_lockstep(report: Report, node: LockstepHost, counter: int) -> bool:
     """Whether an answer is that of the one set of measurements since the answer before."""
     tick = node.ticks - 1
     where = f"before answer {report.ticks}"

@@ -1,0 +1,78 @@
+"""Which wearer walks: a point mass, or a body in MuJoCo."""
+
+import argparse
+import importlib.util
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from saddlewalk.emulation.wearer import Body, Noise, Push, Wearer
+from saddlewalk.errors import UserError
+from saddlewalk.lockstep_host import LockstepHost
+from saddlewalk.options import MUJOCO, WINTER
+from saddlewalk.paths import install_command
+
+
+@dataclass(frozen=True)
+class PlantChoice:
+    """The point mass, or one of physics.bodies.BODIES in MuJoCo. Delays are those of MuJoCo's."""
+
+    body: str | None = None  # None: the point mass
+    sensor_delay_s: float = 0.0
+    torque_delay_s: float = 0.0
+
+    @property
+    def is_mujoco(self) -> bool:
+        return self.body is not None
+
+    @property
+    def fields(self) -> Mapping[str, float | int]:
+        """Fields of saddle_config_t that this wearer needs, under those that a user gives."""
+        if self.body is None:
+            return MappingProxyType({})
+        from saddlewalk.physics.bodies import BODIES
+
+        return BODIES[self.body].fields()
+
+    def joint_core(self, config: Any) -> LockstepHost | None:
+        """The core of the controller of its joints; the point mass has none."""
+        return LockstepHost(config) if self.is_mujoco else None
+
+    def wearer(
+        self,
+        config: Any,
+        noise: Noise | None = None,
+        pushes: tuple[Push, ...] = (),
+        seed: int = 0,
+        **behaviour: Any,
+    ) -> Wearer:
+        """With the body that the firmware's configuration describes; behaviour: as of Wearer."""
+        if self.body is None:
+            return Wearer(Body.of(config), noise, pushes, seed, **behaviour)
+        from saddlewalk.physics.bodies import BODIES
+        from saddlewalk.physics.plant import Plant
+        from saddlewalk.physics.wearer import PhysicalWearer
+
+        plant = Plant(BODIES[self.body].make(config), self.torque_delay_s)
+        behaviour["sensor_delay_s"] = self.sensor_delay_s
+        return PhysicalWearer(plant, config, noise, pushes, seed, **behaviour)
+
+
+POINT_MASS = PlantChoice()
+
+
+def chosen_plant(args: argparse.Namespace) -> PlantChoice:
+    """Of --plant and --body. Raises UserError if it cannot be had."""
+    if args.plant != MUJOCO:
+        if args.body is not None:
+            raise UserError(f"--body {args.body}: only with --plant {MUJOCO}")
+        return POINT_MASS
+    for package in ("mujoco", "piqp"):
+        if importlib.util.find_spec(package) is None:
+            raise UserError(f"--plant {MUJOCO} needs {package}: {install_command('physics')}")
+    choice = PlantChoice(args.body or WINTER)
+    if choice.body != WINTER and (args.height, args.mass) != (None, None):
+        option = "--mass" if args.height is None else "--height"
+        raise UserError(f"{option}: the body {choice.body} has its own, leave it out")
+    return choice

@@ -1,0 +1,1 @@
+"""A body with segments, contacts and torque limits, moved by MuJoCo, that walks by the plan."""

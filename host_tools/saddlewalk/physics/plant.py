@@ -1,0 +1,132 @@
+"""MuJoCo's side of a walk: a body on the floor, its motors and pushes, and what can be measured."""
+
+import math
+from collections import deque
+
+import mujoco
+import numpy as np
+
+from saddlewalk.contract import LEFT, RIGHT
+from saddlewalk.physics.body import TIMESTEP_S, Body
+
+POSE_ITERATIONS, POSE_STEP_MAX, POSE_TOLERANCE = 200, 0.2, 1e-4
+POSE_DAMPING = 1e-4
+KNEE_BEND_RAD = 0.5  # where the search for a pose begins
+LOADED_MIN_N = 1.0  # below, a foot has no CoP
+
+
+class Plant:
+    """A body in MuJoCo, 1 ms a step. World frame: x forward, y to the left, z up, floor at 0."""
+
+    def __init__(self, body: Body, torque_delay_s: float = 0.0) -> None:
+        self.body, self.model = body, body.model
+        self.data = mujoco.MjData(self.model)
+        self.loads_n = [0.0, 0.0]
+        self.cops_m: list[complex] = [0j, 0j]
+        steps = round(torque_delay_s / TIMESTEP_S)
+        self._torques = deque([np.zeros(self.model.nu)] * (steps + 1), maxlen=steps + 1)
+        self._feet = [self.model.body(leg.foot).id for leg in body.legs]
+        self._pelvis = self.model.body(body.pelvis).id
+        # Side of each geom; of all that is no foot -1.
+        self._foot_of_geom = np.full(self.model.ngeom, -1)
+        for side, foot in enumerate(self._feet):
+            self._foot_of_geom[self.model.geom_bodyid == foot] = side
+
+    @property
+    def com_m(self) -> np.ndarray:
+        return np.asarray(self.data.subtree_com[0])
+
+    @property
+    def com_velocity_m_s(self) -> np.ndarray:
+        return np.asarray(self.data.subtree_linvel[0])
+
+    def sole_m(self, side: int) -> np.ndarray:
+        """The middle of the sole."""
+        return self._at_foot(side, self.body.legs[side].sole_m)
+
+    def sole_pitch_rad(self, side: int) -> float:
+        """Positive: heel up."""
+        rotation = self.data.xmat[self._feet[side]].reshape(3, 3)
+        return math.atan2(-rotation[2, 0], rotation[0, 0])
+
+    def _at_foot(self, side: int, local_m: np.ndarray) -> np.ndarray:
+        foot = self._feet[side]
+        return np.asarray(self.data.xpos[foot] + self.data.xmat[foot].reshape(3, 3) @ local_m)
+
+    def stand(self, soles_m: tuple[complex, complex], com_m: np.ndarray) -> None:
+        """At rest with level soles there, the pelvis upright and the CoM at com_m, (3,)."""
+        model, data = self.model, self.data
+        data.qpos[:] = model.qpos0
+        data.qvel[:] = 0
+        for leg in self.body.legs:
+            data.qpos[model.joint(leg.knee).qposadr[0]] = self.body.knee_sign * KNEE_BEND_RAD
+        for _ in range(POSE_ITERATIONS):
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_comPos(model, data)
+            jacobian, error = self._pose_error(soles_m, com_m)
+            if np.abs(error).max() < POSE_TOLERANCE:
+                break
+            damped = jacobian.T @ jacobian + POSE_DAMPING * np.eye(model.nv)
+            change = np.linalg.solve(damped, jacobian.T @ error)
+            limited = np.clip(change, -POSE_STEP_MAX, POSE_STEP_MAX)
+            mujoco.mj_integratePos(model, data.qpos, limited, 1.0)
+        mujoco.mj_forward(model, data)
+        self._sense()
+
+    def _pose_error(
+        self, soles_m: tuple[complex, complex], com_m: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        model, data = self.model, self.data
+        moving, turning = np.zeros((2, 3, model.nv))
+        mujoco.mj_jacSubtreeCom(model, data, moving, 0)
+        rows, errors = [moving.copy()], [com_m - data.subtree_com[0]]
+        for side in (LEFT, RIGHT):
+            point, place = self.sole_m(side), soles_m[side]
+            mujoco.mj_jac(model, data, moving, turning, point, self._feet[side])
+            rows += [moving.copy(), turning.copy()]
+            errors += [np.array([place.real, place.imag, 0.0]) - point]
+            errors += [_to_level(data.xquat[self._feet[side]])]
+        mujoco.mj_jacBody(model, data, moving, turning, self._pelvis)
+        return np.vstack([*rows, turning]), np.concatenate(
+            [*errors, _to_level(data.xquat[self._pelvis])]
+        )
+
+    def step(self, torques: np.ndarray, push_n: complex) -> None:
+        """1 ms with these torques, delayed, and a force through the CoM of the whole body."""
+        data = self.data
+        self._torques.append(torques)
+        data.ctrl[:] = self._torques[0]
+        lever_m = self.com_m - data.xipos[self._pelvis]
+        data.xfrc_applied[self._pelvis] = (
+            *(push_n.real, push_n.imag, 0.0),
+            *(-lever_m[2] * push_n.imag, lever_m[2] * push_n.real),
+            lever_m[0] * push_n.imag - lever_m[1] * push_n.real,
+        )
+        mujoco.mj_step2(self.model, data)
+        self._weigh()
+        mujoco.mj_step1(self.model, data)
+        self._sense()
+
+    def _sense(self) -> None:
+        mujoco.mj_subtreeVel(self.model, self.data)
+
+    def _weigh(self) -> None:
+        """Load and CoP of each foot, from the contacts of the step that was just made."""
+        contacts, forces_n = self.data.contact, self.data.efc_force
+        soles = self._foot_of_geom[contacts.geom].max(axis=1)  # the floor's is -1
+        for side in (LEFT, RIGHT):
+            mine = np.flatnonzero((soles == side) & (contacts.efc_address >= 0))
+            normal_n = forces_n[contacts.efc_address[mine]]
+            self.loads_n[side] = float(normal_n.sum())
+            place_m = self.sole_m(side)
+            if self.loads_n[side] > LOADED_MIN_N:
+                place_m = normal_n @ contacts.pos[mine] / self.loads_n[side]
+            self.cops_m[side] = complex(place_m[0], place_m[1])
+
+
+def _to_level(quaternion: np.ndarray) -> np.ndarray:
+    """The rotation vector, in the world, to the level orientation."""
+    inverse, error = np.zeros(4), np.zeros(3)
+    mujoco.mju_negQuat(inverse, quaternion)
+    mujoco.mju_quat2Vel(error, inverse, 1.0)
+    return error

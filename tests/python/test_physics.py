@@ -1,0 +1,186 @@
+"""A body in MuJoCo that walks by the plan: its statics, its balance, its walk, and the wire."""
+
+import importlib.util
+
+import numpy as np
+import pytest
+
+from saddlewalk.cli import main
+from saddlewalk.config import configuration
+from saddlewalk.contract import GRAVITY_M_S2, LEFT, RIGHT, STANDING, TICK_S
+from saddlewalk.emulation import closed_loop
+from saddlewalk.emulation.plants import PlantChoice
+from saddlewalk.emulation.wearer import Noise, Push
+from saddlewalk.planning.schedule import schedule_of
+
+BODIES = ("winter", "dm_control")
+STEADY = Noise(position_m=0.0, velocity_m_s=0.0)
+
+needs_mujoco = pytest.mark.skipif(
+    importlib.util.find_spec("mujoco") is None or importlib.util.find_spec("piqp") is None,
+    reason="MuJoCo is missing: run `make physics`",
+)
+
+
+def wearer_with(body="winter", fields=None, **options):
+    plant = PlantChoice(body)
+    config = configuration({**plant.fields, **(fields or {})})
+    return config, plant.wearer(config, options.pop("noise", STEADY), **options)
+
+
+def walked(config, wearer, speeds, duration_s):
+    """The last tick before the end or the fall."""
+    last = None
+    for tick in closed_loop.walk(config, wearer, schedule_of(speeds, 0.17)):
+        if tick.time_s >= duration_s or wearer.fallen:
+            return last
+        last = tick
+
+
+@needs_mujoco
+def test_segments_are_those_of_the_tables():
+    """Winter 2009, table 4.1; the arms and the head are in the upper body's."""
+    _, wearer = wearer_with(fields={"body_height_m": 1.6, "body_mass_kg": 80.0})
+    model = wearer.plant.model
+    masses = {model.body(k).name: model.body_mass[k] for k in range(1, model.nbody)}
+    assert sum(masses.values()) == pytest.approx(80.0)
+    assert masses["left_thigh"] == pytest.approx(8.0)
+    assert masses["right_foot"] == pytest.approx(1.16)
+    assert masses["pelvis"] == pytest.approx(54.24)
+    legs = model.body("left_shank").pos, model.body("left_foot").pos
+    assert [-leg[2] for leg in legs] == pytest.approx([0.245 * 1.6, 0.246 * 1.6])
+
+
+@needs_mujoco
+@pytest.mark.parametrize("body", BODIES)
+def test_a_body_stands_upright_with_its_weight_on_both_soles(body):
+    config, wearer = wearer_with(body)
+    tick = walked(config, wearer, [(0.0, 0.0)], 1.0)
+    weight_n = wearer.plant.body.mass_kg * GRAVITY_M_S2
+    assert wearer.plant.body.mass_kg == pytest.approx(config.body_mass_kg)
+    assert wearer.plant.loads_n == pytest.approx([weight_n / 2] * 2, rel=0.02)
+    assert wearer.height_m == pytest.approx(wearer.body.pendulum_m, abs=0.015)
+    assert abs(wearer.com_m) < 0.005 and abs(wearer.velocity_m_s) < 0.01
+    assert tick.exact.contact == (True, True)
+    for side, outward in ((LEFT, 1), (RIGHT, -1)):
+        assert wearer.feet[side].position_m.imag * outward == pytest.approx(
+            config.step_width_slow_m / 2, abs=0.002
+        )
+
+
+@needs_mujoco
+def test_the_com_accelerates_as_the_quadratic_programme_was_asked():
+    """The momentum of the floating base is that of the whole body."""
+    from saddlewalk.physics.inverse_dynamics import Contact, FootTarget, Targets
+
+    _, wearer = wearer_with()
+    plant, stance = wearer.plant, FootTarget(Contact.SOLE)
+    for _ in range(300):  # until the contacts have settled
+        hold = Targets(np.array([0, 0, 20 * (wearer.height_m - plant.com_m[2])]), (stance,) * 2)
+        plant.step(wearer._dynamics.torques(plant.data, hold), 0j)
+    before = plant.com_velocity_m_s.copy()
+    asked = np.array([0.3, -0.2, 0.4])
+    for _ in range(20):
+        plant.step(wearer._dynamics.torques(plant.data, Targets(asked, (stance,) * 2)), 0j)
+    assert (plant.com_velocity_m_s - before) / 0.02 == pytest.approx(asked, abs=0.08)
+
+
+@needs_mujoco
+def test_a_push_gives_the_body_its_impulse():
+    _, wearer = wearer_with()
+    plant = wearer.plant
+    rest = plant.com_velocity_m_s.copy()
+    plant.data.qpos[2] += 1.0  # in the air nothing else accelerates it sideways
+    for _ in range(100):
+        plant.step(np.zeros(plant.model.nu), 60 + 30j)
+    gained = plant.com_velocity_m_s - rest
+    mass_kg = plant.body.mass_kg
+    assert gained == pytest.approx([6 / mass_kg, 3 / mass_kg, -0.1 * GRAVITY_M_S2], rel=0.01)
+
+
+@needs_mujoco
+def test_torques_arrive_after_their_delay():
+    from saddlewalk.physics.body import winter
+    from saddlewalk.physics.plant import Plant
+
+    plant = Plant(winter(1.79, 63.3), torque_delay_s=0.003)
+    plant.stand((0.1j, -0.1j), np.array([0.0, 0.0, 0.97]))
+    for number in range(1, 6):
+        plant.step(np.full(plant.model.nu, float(number)), 0j)
+        assert plant.data.ctrl[0] == max(number - 3, 0)
+
+
+@needs_mujoco
+def test_it_walks_is_pushed_and_recovers_and_a_seed_gives_the_same_bits():
+    ends = []
+    for _ in range(2):
+        push = Push(10.0, 3.0, 90.0)
+        config, wearer = wearer_with(pushes=(push,), noise=Noise(), seed=3)
+        tick = walked(config, wearer, [(0.0, 0.0), (0.4, 0.9)], 5.2)
+        assert not wearer.fallen
+        assert wearer.com_m.real > 1.5
+        assert wearer.velocity_m_s.real == pytest.approx(0.9, abs=0.25)
+        assert tick.plan.step_length_m > 0.4
+        ends.append((wearer.com_m, wearer.velocity_m_s, *wearer.plant.data.qpos))
+    assert ends[0] == ends[1]
+
+
+@needs_mujoco
+def test_it_stops_and_stands():
+    config, wearer = wearer_with()
+    tick = walked(config, wearer, [(0.0, 0.0), (0.4, 0.8), (2.5, 0.0)], 7.0)
+    assert not wearer.fallen
+    assert tick.plan.mode == STANDING and abs(wearer.velocity_m_s) < 0.02
+
+
+@needs_mujoco
+def test_a_hard_push_is_a_fall():
+    config, wearer = wearer_with(pushes=(Push(120.0, 0.5, 90.0),))
+    walked(config, wearer, [(0.0, 0.0)], 3.0)
+    assert wearer.fallen and 0.5 < wearer.fell_at_s < 2.5
+    assert wearer.height_m < 0.75 * wearer.body.pendulum_m
+
+
+@needs_mujoco
+def test_measurements_come_late_by_the_sensors_delay():
+    plant = PlantChoice("winter", sensor_delay_s=0.04)
+    config = configuration(plant.fields)
+    wearer, heights = plant.wearer(config, STEADY), []
+    for tick in closed_loop.walk(config, wearer, schedule_of([(0.0, 0.0)], 0.0)):
+        heights.append((wearer.height_m, tick.exact.height_m))
+        if tick.time_s >= 3 * TICK_S:
+            break
+    assert all(now != late for now, late in heights[1:])
+
+
+@needs_mujoco
+def test_the_demo_walks_a_body_over_the_wire(tmp_path, capsys):
+    from host_node import own_lcm
+    from saddlewalk.transport.bus import private_udp
+
+    options = ["--can", private_udp(), "--lcm", own_lcm(), "--out", str(tmp_path / "demo")]
+    walk = ["--duration", "3.2", "--speed", "0.8", "--plant", "mujoco"]
+    assert main(["demo", *options, *walk]) == 0
+    shown = capsys.readouterr().out
+    assert "ok   the wearer stayed up" in shown and "clock: lockstep" in shown
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--body", "winter"], "--body winter: only with --plant mujoco"),
+        (["--plant", "mujoco", "--clock", "realtime"], "--clock realtime: not with"),
+        (["--plant", "mujoco", "--body", "dm_control", "--mass", "70"], "--mass: the body"),
+    ],
+)
+def test_options_that_do_not_go_together_are_named(options, words, tmp_path, capsys):
+    if "mujoco" in options and importlib.util.find_spec("mujoco") is None:
+        pytest.skip("MuJoCo is missing: run `make physics`")
+    assert main(["demo", "--out", str(tmp_path / "demo"), *options]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_without_mujoco_the_remedy_is_named(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert main(["demo", "--plant", "mujoco", "--out", str(tmp_path / "demo")]) == 2
+    assert "--plant mujoco needs mujoco: run" in capsys.readouterr().err
