@@ -122,6 +122,18 @@ def _fill(target: Any, measurement: Measurement) -> None:
             foot.cop_m.x, foot.cop_m.y = cop_m
 
 
+def config_bytes(config: Any) -> bytes:
+    """A saddle_config_t for another process, for config_from()."""
+    return bytes(ffi().buffer(config))
+
+
+def config_from(image: bytes) -> Any:
+    """The saddle_config_t of config_bytes()."""
+    config = ffi().new("saddle_config_t *")
+    ffi().memmove(config, image, len(image))
+    return config
+
+
 def model_of(config: Any) -> Any:
     """The saddle_model_t of a configuration: with what saddle_init() derives from it."""
     model = ffi().new("saddle_model_t *")

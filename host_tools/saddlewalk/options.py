@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 
 from saddlewalk.outputs import add_input
+from saddlewalk.workers import Workers
 
 
 def number_in(low: float, high: float, unit: str = "") -> Callable[[str], float]:
@@ -93,7 +94,7 @@ def add_gait_options(parser: argparse.ArgumentParser, default_pace: str | None =
 
 
 def add_campaign_options(parser: argparse.ArgumentParser) -> None:
-    """--seed and --jobs of many walks at once."""
+    """--seed, and --jobs or --scheduler for workers_of()."""
     parser.add_argument(
         "--seed",
         type=whole_number_in(0, 2**32 - 1),
@@ -108,6 +109,16 @@ def add_campaign_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="processes that share the work (default: one for each core)",
     )
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="run on the workers of this dask scheduler, such as tcp://10.0.0.5:8786, instead of "
+        "--jobs; same results",
+    )
+
+
+def workers_of(args: argparse.Namespace) -> Workers:
+    return Workers(args.jobs, args.scheduler)
 
 
 def add_recordings(parser: argparse.ArgumentParser) -> None:

@@ -45,8 +45,12 @@ NOT_RUN = {
     ".venv/bin/saddlewalk bench": "minutes, and packages from the network: test_bench.py",
     ".venv/bin/saddlewalk evaluate": "minutes: test_evaluation.py",
     ".venv/bin/saddlewalk faults": "minutes: test_faults.py",
+    ".venv/bin/pip install -c requirements.lock": "packages from the network",
+    ".venv/bin/dask": "other machines: test_workers.py",
     "make controller": "a cross-compiler and QEMU: test_controller.py",
 }
+
+WITH_SUBCOMMANDS = ("cantools", "dask", "pip")
 
 
 @dataclass(frozen=True)
@@ -142,7 +146,7 @@ def known_options(words: list[str]) -> set[str] | None:
     if program.startswith(("build/bin/", ".venv/bin/")):
         own = Path(sys.executable).parent / Path(program).name
         path = own if program.startswith(".venv") else paths.built(program.removeprefix("build/"))
-        asked = [path, *([rest[0]] if own.name == "cantools" else []), "--help"]
+        asked = [path, *([rest[0]] if own.name in WITH_SUBCOMMANDS else []), "--help"]
         help_text = subprocess.run(asked, capture_output=True, text=True, check=False)
         return set(re.findall(r"(?<![\w-])--?[a-zA-Z][\w-]*", help_text.stdout + help_text.stderr))
     return None

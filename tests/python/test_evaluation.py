@@ -31,6 +31,7 @@ from saddlewalk.evaluation.walks import (
     evaluated_walk,
     run,
 )
+from saddlewalk.workers import Workers
 from synthetic_walk import Walk as RecordedWalk
 from synthetic_walk import csv_text
 
@@ -217,8 +218,8 @@ def test_a_push_that_fells_is_foreseen_and_checked_by_its_ticks():
 
 def test_the_same_walks_whatever_the_number_of_jobs():
     config, progress = default_config(), []
-    alone = evaluate(3, 3, config, 1, progress.append)
-    shared = evaluate(3, 3, config, 2, lambda done: None)
+    alone = evaluate(3, 3, config, Workers(1), progress.append)
+    shared = evaluate(3, 3, config, Workers(2), lambda done: None)
     assert [repr(walk) for walk in alone] == [repr(walk) for walk in shared]
     assert progress[-1] == len(alone) == len(KINDS) * (3 + 1)
     trial, course = course_of(3, 1, "recovery", config)

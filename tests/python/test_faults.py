@@ -25,6 +25,7 @@ from saddlewalk.faults.scenario import (
     read_scenario,
 )
 from saddlewalk.transport import wire
+from saddlewalk.workers import Workers
 
 EXAMPLE = Path(__file__).parents[2] / "examples/faults.toml"
 CONFIG = configuration({})
@@ -309,11 +310,11 @@ def test_late_data_are_counted_though_the_wire_cannot_tell():
 
 def test_the_campaign_is_the_same_whatever_shares_the_work():
     scenario = replace(scenario_of("loss", 0.3, 0.9), duration_s=5.0)
-    alone = campaign(scenario, 2, 5, CONFIG, 1, lambda _: None)
+    alone = campaign(scenario, 2, 5, CONFIG, Workers(1), lambda _: None)
     seen = []
-    assert campaign(scenario, 2, 5, CONFIG, 2, seen.append) == alone
+    assert campaign(scenario, 2, 5, CONFIG, Workers(2), seen.append) == alone
     assert seen == [2, 4]
-    assert alone != campaign(scenario, 2, 6, CONFIG, 1, lambda _: None)
+    assert alone != campaign(scenario, 2, 6, CONFIG, Workers(1), lambda _: None)
     rows = rows_of(alone)
     assert [(row.fault.strength, row.runs, row.unsafe) for row in rows] == [
         (0.3, 2, 0),

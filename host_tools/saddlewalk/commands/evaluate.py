@@ -1,7 +1,6 @@
 """`saddlewalk evaluate`: how well the supervisor predicts falls, and whether its claims hold."""
 
 import argparse
-import contextlib
 import functools
 import itertools
 import json
@@ -13,9 +12,16 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.atomic_write import write_text
 from saddlewalk.config import add_body_options, given_fields, load_config
-from saddlewalk.options import add_campaign_options, add_plant_options, speed_range, whole_number_in
+from saddlewalk.options import (
+    add_campaign_options,
+    add_plant_options,
+    speed_range,
+    whole_number_in,
+    workers_of,
+)
 from saddlewalk.outputs import OutputFolder, add_input, add_output
 from saddlewalk.printable import printable
+from saddlewalk.progress import progress_bar
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -157,7 +163,7 @@ def _emulate(
     from saddlewalk.evaluation.walks import KINDS
 
     count = args.walks or WALKS
-    console.print(f"seed {args.seed}, {count} pushed walks of each kind, {args.jobs} jobs")
+    console.print(f"seed {args.seed}, {count} pushed walks of each kind, {workers_of(args)}")
     walks = _walk(args, count, setting, config)
     by_kind = {kind: [walk for walk in walks if walk.trial.kind == kind] for kind in KINDS}
     detections = {kind: detection_of(by_kind[kind]) for kind in KINDS}
@@ -214,8 +220,8 @@ def _score_falls(args: argparse.Namespace) -> Part:
     }
     walks = read_walks(args.falls, walkers)
     tasks = [(walk, configs[name]) for name, each in walks.items() for walk in each]
-    with _progress("recorded walks", len(tasks)) as done:
-        scored = iter(score_walks(tasks, args.seed, args.jobs, done))
+    with progress_bar("recorded walks", len(tasks)) as done:
+        scored = iter(score_walks(tasks, args.seed, workers_of(args), done))
     by_walker = {name: list(itertools.islice(scored, len(each))) for name, each in walks.items()}
     scores = {
         name: {inputs: [walk.scores[inputs] for walk in each] for inputs in INPUTS}
@@ -235,20 +241,8 @@ def _walk(args: argparse.Namespace, count: int, setting: "Setting", config: Any)
     from saddlewalk.evaluation.walks import KINDS, calm_walks, evaluate
 
     total = len(KINDS) * (count + calm_walks(count))
-    with _progress("walks", total) as done:
-        return evaluate(args.seed, count, config, args.jobs, done, setting)
-
-
-@contextlib.contextmanager
-def _progress(name: str, total: int) -> Iterator[Callable[[int], None]]:
-    """A progress bar on standard error; yields its update function."""
-    from rich.console import Console
-    from rich.progress import MofNCompleteColumn, Progress, TimeRemainingColumn
-
-    columns = (*Progress.get_default_columns()[:2], MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(name, total=total)
-        yield lambda done: bar.update(task, completed=done)
+    with progress_bar("walks", total) as done:
+        return evaluate(args.seed, count, config, workers_of(args), done, setting)
 
 
 def _table(title: str, *columns: str) -> Any:

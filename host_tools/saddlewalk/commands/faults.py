@@ -1,17 +1,21 @@
 """`saddlewalk faults`: fault injection into frames, clocks and processes, and the results."""
 
 import argparse
-import contextlib
 import math
 import sys
-from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
 from saddlewalk.errors import UserError
-from saddlewalk.options import add_campaign_options, add_plant_options, whole_number_in
+from saddlewalk.options import (
+    add_campaign_options,
+    add_plant_options,
+    whole_number_in,
+    workers_of,
+)
 from saddlewalk.outputs import add_input
+from saddlewalk.progress import progress_bar
 
 if TYPE_CHECKING:
     from saddlewalk.emulation.plants import PlantChoice
@@ -85,28 +89,17 @@ def _in_lockstep(
 ) -> list["Outcome"]:
     from saddlewalk.faults.campaign import campaign
 
-    with _progress("walks", args.runs * len(scenario.faults)) as progress:
-        return campaign(scenario, args.runs, args.seed, config, args.jobs, progress, plant)
+    workers = workers_of(args)
+    with progress_bar("walks", args.runs * len(scenario.faults)) as progress:
+        return campaign(scenario, args.runs, args.seed, config, workers, progress, plant)
 
 
 def _live(args: argparse.Namespace, scenario: "Scenario", config: Any) -> list["Outcome"]:
     from saddlewalk.faults.live import live_campaign, live_walks
 
     total = len(live_walks(scenario, args.live))
-    with _progress("walks in real time", total) as progress:
+    with progress_bar("walks in real time", total) as progress:
         return live_campaign(scenario, args.live, args.seed, config, progress)
-
-
-@contextlib.contextmanager
-def _progress(what: str, total: int) -> Iterator[Callable[[int], None]]:
-    """A progress bar on standard error; yields its update function."""
-    from rich.console import Console
-    from rich.progress import MofNCompleteColumn, Progress, TimeRemainingColumn
-
-    columns = (*Progress.get_default_columns()[:2], MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what, total=total)
-        yield lambda done: bar.update(task, completed=done)
 
 
 def _table(rows: list["Row"], title: str) -> Any:

@@ -8,7 +8,6 @@ import cmath
 import math
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from saddlewalk.contract import TICK_S
-from saddlewalk.core import Command, ffi
+from saddlewalk.core import Command, config_bytes, config_from
 from saddlewalk.emulation.wearer import Noise
 from saddlewalk.errors import UserError
 from saddlewalk.evaluation.scoring import (
@@ -36,6 +35,7 @@ from saddlewalk.recorded_states import (
     scored_rows,
 )
 from saddlewalk.table import numbers_of, read_texts
+from saddlewalk.workers import Workers, run_tasks
 
 ROWS_A_TICK = round(TICK_S / 0.02)
 COM_HEIGHT = 0.57  # of the body's height
@@ -185,36 +185,23 @@ def _check_state(where: str, numbers: Mapping[str, float], last_s: float) -> Non
 
 
 def score_walks(
-    walks: Sequence[tuple[Walk, Any]], seed: int, jobs: int, progress: Callable[[int], None]
+    walks: Sequence[tuple[Walk, Any]], seed: int, workers: Workers, progress: Callable[[int], None]
 ) -> list[Scored]:
     """Each walk with the saddle_config_t of its walker; progress(walks done).
 
-    The same scores in the same order, however many jobs share the work.
+    The same scores in the same order, whoever does the work.
     """
-    tasks = [(walk, bytes(ffi().buffer(config)), seed) for walk, config in walks]
-    scored: dict[int, list[Scored]] = {}
-    with ProcessPoolExecutor(jobs) as pool:
-        futures = {
-            pool.submit(_work, tasks[first : first + RUNS_A_TASK]): first
-            for first in range(0, len(tasks), RUNS_A_TASK)
-        }
-        try:
-            for future in as_completed(futures):
-                scored[futures[future]] = future.result()
-                progress(sum(map(len, scored.values())))
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-    return [each for first in sorted(scored) for each in scored[first]]
+    runs = [(walk, config_bytes(config), seed) for walk, config in walks]
+    tasks = [(runs[first : first + RUNS_A_TASK],) for first in range(0, len(runs), RUNS_A_TASK)]
+    return run_tasks(_work, tasks, workers, progress)
 
 
-def _work(tasks: Sequence[tuple[Walk, bytes, int]]) -> list[Scored]:
-    return [_score(*task) for task in tasks]
+def _work(runs: Sequence[tuple[Walk, bytes, int]]) -> list[Scored]:
+    return [_score(*run) for run in runs]
 
 
 def _score(walk: Walk, image: bytes, seed: int) -> Scored:
-    config = ffi().new("saddle_config_t *")
-    ffi().memmove(config, image, len(image))
+    config = config_from(image)
     random = np.random.default_rng([seed, zlib.crc32(walk.name.encode())])
     exact = supervise(walk, walk.states, config)
     noisy = supervise(walk, _with_noise(walk.states, random), config)

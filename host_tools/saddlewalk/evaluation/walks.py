@@ -9,14 +9,13 @@ fall and the pushes gather where half do.
 
 import math
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from saddlewalk.contract import STANDING, TICK_S, WALKING
-from saddlewalk.core import ffi, library
+from saddlewalk.core import config_bytes, config_from, library
 from saddlewalk.emulation import closed_loop
 from saddlewalk.emulation.plants import POINT_MASS, PlantChoice
 from saddlewalk.emulation.wearer import Body, Noise, Push, Wearer
@@ -25,6 +24,7 @@ from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_marg
 from saddlewalk.evaluation.emulated import TickRecorder
 from saddlewalk.evaluation.scoring import Announced, Score, one_tick_late, score
 from saddlewalk.planning.schedule import schedule_of
+from saddlewalk.workers import Workers, run_tasks
 
 KINDS = ("planned", "recovery")
 SPEEDS_M_S = (0.5, 1.6)
@@ -156,27 +156,18 @@ def evaluate(
     seed: int,
     walks: int,
     config: Any,
-    jobs: int,
+    workers: Workers,
     progress: Callable[[int], None],
     setting: Setting = POINT_MASS_WALKS,
 ) -> list[Walk]:
     """Both kinds of wearer, pushed `walks` times each and unperturbed; progress(walks done).
 
-    The same walks in the same order, however many jobs share the work.
+    The same walks in the same order, whoever does the work.
     """
-    image = bytes(ffi().buffer(config))
+    image = config_bytes(config)
     chains = _chains(walks) + [[-1 - k] for k in range(calm_walks(walks))]
     tasks = [(seed, chain, kind, image, setting) for kind in KINDS for chain in chains]
-    done: list[Walk] = []
-    with ProcessPoolExecutor(jobs) as pool:
-        futures = [pool.submit(_work, *task) for task in tasks]
-        try:
-            for future in as_completed(futures):
-                done += future.result()
-                progress(len(done))
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
+    done = run_tasks(_work, tasks, workers, progress)
     return sorted(done, key=lambda walk: (walk.trial.kind, walk.trial.index))
 
 
@@ -186,8 +177,7 @@ def calm_walks(walks: int) -> int:
 
 
 def _work(seed: int, chain: list[int], kind: str, image: bytes, setting: Setting) -> list[Walk]:
-    config = ffi().new("saddle_config_t *")
-    ffi().memmove(config, image, len(image))
+    config = config_from(image)
     walks = []
     for trial, course in _walk_chain(seed, chain, kind, config, setting):
         # A body's physics takes seconds for a walk: it walks once.

@@ -7,7 +7,6 @@ and ages are those of the firmware's libraries, and nothing else decides when a 
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +25,7 @@ from saddlewalk.faults.scenario import MEASURED, Fault, Line, Occurrence, Scenar
 from saddlewalk.firmware import config_of, ffi, library
 from saddlewalk.ticks import Messages, TickReader
 from saddlewalk.transport import wire
+from saddlewalk.workers import Workers, run_tasks
 
 HEEL_STRIKE_RAD = 0.17
 CLOCK_BEGIN_S = 4000.0  # so that the clock may jump back
@@ -206,33 +206,20 @@ def campaign(
     runs: int,
     seed: int,
     config: Any,
-    jobs: int,
+    workers: Workers,
     progress: Callable[[int], None],
     plant: PlantChoice = POINT_MASS,
 ) -> list[Outcome]:
-    """`runs` walks with each fault, in lockstep; the same whatever `jobs`. progress(walks done)."""
-    image = bytes(core.ffi().buffer(config))
-    with ProcessPoolExecutor(jobs) as pool:
-        futures = {
-            pool.submit(_work, scenario, index, runs, seed, image, plant): index
-            for index in range(len(scenario.faults))
-        }
-        done: dict[int, list[Outcome]] = {}
-        try:
-            for future in as_completed(futures):
-                done[futures[future]] = future.result()
-                progress(runs * len(done))
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-    return [outcome for index in sorted(done) for outcome in done[index]]
+    """`runs` walks with each fault, in lockstep; the same whoever runs them. progress(walks)."""
+    image = core.config_bytes(config)
+    tasks = [(scenario, index, runs, seed, image, plant) for index in range(len(scenario.faults))]
+    return run_tasks(_work, tasks, workers, progress)
 
 
 def _work(
     scenario: Scenario, index: int, runs: int, seed: int, image: bytes, plant: PlantChoice
 ) -> list[Outcome]:
-    config = core.ffi().new("saddle_config_t *")
-    core.ffi().memmove(config, image, len(image))
+    config = core.config_from(image)
     return [run(scenario, index, number, seed, config, plant)[0] for number in range(runs)]
 
 

@@ -6,7 +6,6 @@ import subprocess
 import threading
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import replace
 from typing import Any
 
@@ -25,6 +24,7 @@ from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.transport import wire
 from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.lcmbus import open_lcm
+from saddlewalk.workers import Workers, run_tasks
 
 AT_ONCE = 4  # they hardly compute, but must not wait for each other
 SLACK_S = 0.1  # from the firmware's tick until it is checked
@@ -154,23 +154,13 @@ def live_campaign(
     scenario: Scenario, each: int, seed: int, config: Any, progress: Callable[[int], None]
 ) -> list[Outcome]:
     """Some at once, each on a bus and an LCM group of its own. progress(walks done)."""
-    image = bytes(core.ffi().buffer(config))
-    walks = live_walks(scenario, each)
-    with ProcessPoolExecutor(AT_ONCE) as pool:
-        futures = [pool.submit(_work, scenario, *walk, seed, image) for walk in walks]
-        try:
-            for done, _ in enumerate(as_completed(futures), 1):
-                progress(done)
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-    return [future.result() for future in futures]
+    image = core.config_bytes(config)
+    tasks = [(scenario, *walk, seed, image) for walk in live_walks(scenario, each)]
+    return run_tasks(_work, tasks, Workers(AT_ONCE), progress)
 
 
-def _work(scenario: Scenario, index: int, number: int, seed: int, image: bytes) -> Outcome:
-    config = core.ffi().new("saddle_config_t *")
-    core.ffi().memmove(config, image, len(image))
-    return run_live(scenario, index, number, seed, config)
+def _work(scenario: Scenario, index: int, number: int, seed: int, image: bytes) -> list[Outcome]:
+    return [run_live(scenario, index, number, seed, core.config_from(image))]
 
 
 def run_live(scenario: Scenario, index: int, number: int, seed: int, config: Any) -> Outcome:
