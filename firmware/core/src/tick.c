@@ -96,28 +96,28 @@ static uint32_t take_command(saddle_context_t *context, const saddle_input_t *in
 }
 
 /* Where the wearer is to be. */
-static saddle_intent_t intent_of(const saddle_plan_t *plan)
+static void read_intent(const saddle_plan_t *plan, saddle_intent_t *intent)
 {
-    const saddle_vec3_t stance_m = plan->foot_m[plan->support];
-    const saddle_vec3_t other_m = plan->foot_m[saddle_other_side((saddle_side_t)plan->support)];
-    const bool walking = plan->speed_m_s > 0.0f;
-    const float share = walking ? 0.0f : 0.5f;
-    const saddle_vec2_t origin_m = {stance_m.x + share * (other_m.x - stance_m.x),
-                                    stance_m.y + share * (other_m.y - stance_m.y)};
-    saddle_intent_t intent;
-    intent.leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u;
-    intent.walking = walking;
-    intent.step.stance = (saddle_side_t)plan->support;
-    intent.step.speed_m_s = plan->speed_m_s;
-    intent.step.half_behind_m = 0.5f * plan->step_length_m;
-    intent.step.width_behind_m = plan->step_width_m;
-    intent.step.landing_m.x = plan->landing_m.x;
-    intent.step.landing_m.y = plan->landing_m.y - stance_m.y;
-    intent.com.com_m.x = plan->com_m.x - origin_m.x;
-    intent.com.com_m.y = plan->com_m.y - origin_m.y;
-    intent.com.velocity_m_s.x = plan->com_velocity_m_s.x;
-    intent.com.velocity_m_s.y = plan->com_velocity_m_s.y;
-    return intent;
+    const saddle_side_t stance = (saddle_side_t)plan->support;
+    const saddle_vec3_t *stance_m = &plan->foot_m[stance];
+    const saddle_vec3_t *other_m = &plan->foot_m[saddle_other_side(stance)];
+    saddle_vec2_t origin_m = {stance_m->x, stance_m->y};
+    if (!(plan->speed_m_s > 0.0f)) {
+        origin_m.x += 0.5f * (other_m->x - stance_m->x);
+        origin_m.y += 0.5f * (other_m->y - stance_m->y);
+    }
+    intent->leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u;
+    intent->walking = plan->speed_m_s > 0.0f;
+    intent->step.stance = stance;
+    intent->step.speed_m_s = plan->speed_m_s;
+    intent->step.half_behind_m = 0.5f * plan->step_length_m;
+    intent->step.width_behind_m = plan->step_width_m;
+    intent->step.landing_m.x = plan->landing_m.x;
+    intent->step.landing_m.y = plan->landing_m.y - stance_m->y;
+    intent->com.com_m.x = plan->com_m.x - origin_m.x;
+    intent->com.com_m.y = plan->com_m.y - origin_m.y;
+    intent->com.velocity_m_s.x = plan->com_velocity_m_s.x;
+    intent->com.velocity_m_s.y = plan->com_velocity_m_s.y;
 }
 
 /* The plan under the command, or under a stand where the inputs are lost. Its feet are measured as far
@@ -138,7 +138,8 @@ static SADDLE_NOINLINE void plan_walk(saddle_context_t *context, const saddle_se
 static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_sensed_t *sensed,
                                       saddle_output_t *output)
 {
-    const saddle_intent_t intent = intent_of(&output->plan);
+    saddle_intent_t intent;
+    read_intent(&output->plan, &intent);
     output->faults |=
         saddle_supervisor_update(&context->supervisor, &context->model, sensed, &intent, output);
     output->walk = context->supervisor.learning.walk;

@@ -100,20 +100,18 @@ static uint32_t known_of(const saddle_supervisor_t *supervisor, const saddle_int
     return known;
 }
 
-static saddle_posture_t posture_of(const saddle_step_tracker_t *steps,
-                                   const saddle_measurement_t *measurement,
-                                   const saddle_intent_t *intent, uint32_t known)
+/* The measured posture, in the frame of the CoM. */
+static void read_posture(const saddle_step_tracker_t *steps,
+                         const saddle_measurement_t *measurement, const saddle_intent_t *intent,
+                         saddle_posture_t *posture)
 {
-    saddle_posture_t posture;
-    posture.com.com_m.x = 0.0f;
-    posture.com.com_m.y = 0.0f;
-    posture.com.velocity_m_s = measurement->com.velocity_m_s;
-    posture.cop_m[SADDLE_LEFT] = measurement->foot[SADDLE_LEFT].cop_m;
-    posture.cop_m[SADDLE_RIGHT] = measurement->foot[SADDLE_RIGHT].cop_m;
-    posture.v_comp_m_s = steps->v_comp_known ? steps->v_comp_m_s : intent->step.speed_m_s;
-    posture.half_step_m = steps->half_step_m;
-    posture.known = known;
-    return posture;
+    posture->com.com_m.x = 0.0f;
+    posture->com.com_m.y = 0.0f;
+    posture->com.velocity_m_s = measurement->com.velocity_m_s;
+    posture->cop_m[SADDLE_LEFT] = measurement->foot[SADDLE_LEFT].cop_m;
+    posture->cop_m[SADDLE_RIGHT] = measurement->foot[SADDLE_RIGHT].cop_m;
+    posture->v_comp_m_s = steps->v_comp_known ? steps->v_comp_m_s : intent->step.speed_m_s;
+    posture->half_step_m = steps->half_step_m;
 }
 
 /* The margin of what is known, and what it teaches. */
@@ -150,7 +148,8 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     saddle_step_tracker_t *steps = &supervisor->steps;
     saddle_track_steps(steps, model, sensed->measurement, sensed->faults, sensed->dt_s);
     const uint32_t known = known_of(supervisor, intent, sensed->faults);
-    const saddle_posture_t posture = posture_of(steps, sensed->measurement, intent, known);
+    saddle_posture_t posture = {.known = known};
+    read_posture(steps, sensed->measurement, intent, &posture);
     const saddle_support_t support = saddle_score_posture(model, &posture, scores);
     const uint32_t faults = sensed->faults | saddle_score_faults(known, scores);
     saddle_compare_nothing(verdict);
