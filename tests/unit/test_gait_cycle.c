@@ -4,6 +4,7 @@
 #include "math/fixed.h"
 #include "model/gait_model.h"
 #include "motion/gait_cycle.h"
+#include "motion/speed_profile.h"
 
 static saddle_config_t config;
 static saddle_body_t body;
@@ -32,8 +33,7 @@ static void begin(uint8_t phase, float speed, bool under_way)
         .under_way = under_way,
     };
     saddle_cycle_begin(&cycle, model_of(&config), &start);
-    cycle.profile.target = start.speed;
-    cycle.profile.rate_m_s2 = 0.5f;
+    saddle_cycle_set_pace(&cycle, speed, 0.5f);
 }
 
 static uint32_t advance(uint32_t dt_us, bool *arrived)
@@ -125,10 +125,9 @@ static void test_last_swing_comes_to_rest_beside_the_stance_foot(void)
         advance(1000, &arrived);
     }
     ASSERT_SAME_FLOAT(0.5f, cycle.swing.land_progress);
-    const float speed = saddle_speed_to_m_s(cycle.profile.speed);
+    const float speed = cycle.profile.speed_m_s;
     const float way = saddle_cycle_distance_to_via_point_m(&cycle);
-    cycle.profile.target = 0;
-    cycle.profile.rate_m_s2 = speed * speed / (2.0f * way);
+    saddle_cycle_set_pace(&cycle, 0.0f, speed * speed / (2.0f * way));
     const double expected_us = 2e6 * (double)way / (double)speed;
     double walked_us = 0.0;
     saddle_pose_t last = pose();
@@ -155,8 +154,9 @@ static void test_last_swing_that_has_lost_its_speed_has_arrived(void)
     begin(1, 0.3f, false);
     cycle.last_swing = true;
     cycle.position = -1000 * (saddle_fixed_t)4398046511; /* 1 um before */
-    cycle.profile.speed = 0;
-    cycle.profile.target = 0;
+    cycle.x_m = saddle_position_to_m(cycle.position);
+    saddle_profile_set_speed(&cycle.profile, 0);
+    saddle_cycle_set_pace(&cycle, 0.0f, 0.5f);
     TEST_ASSERT_EQUAL_UINT32(80000, advance(80000, &arrived));
     TEST_ASSERT_TRUE(arrived);
 }

@@ -28,9 +28,10 @@ static double metres(saddle_fixed_t position)
 
 static saddle_speed_profile_t profile_of(float speed, float target, float rate)
 {
-    return (saddle_speed_profile_t){.speed = saddle_speed_from_m_s(speed),
-                                    .target = saddle_speed_from_m_s(target),
-                                    .rate_m_s2 = rate};
+    saddle_speed_profile_t made = {.speed = 0};
+    saddle_profile_set_speed(&made, saddle_speed_from_m_s(speed));
+    saddle_profile_aim(&made, target, rate);
+    return made;
 }
 
 static float time_s(const saddle_speed_profile_t *p, float way_m)

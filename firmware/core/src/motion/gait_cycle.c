@@ -32,6 +32,19 @@ bool saddle_cycle_before_landing(const saddle_cycle_t *cycle)
     return cycle->phase % 2u == 0u;
 }
 
+static void move_to(saddle_cycle_t *cycle, saddle_fixed_t position)
+{
+    cycle->position = position;
+    cycle->x_m = saddle_position_to_m(position);
+}
+
+/* The end of a last swing. */
+static void rest_beside_foot(saddle_cycle_t *cycle)
+{
+    move_to(cycle, 0);
+    saddle_profile_set_speed(&cycle->profile, 0);
+}
+
 static saddle_side_t stance_of_phase(uint8_t phase)
 {
     return phase == 0u || phase == 3u ? SADDLE_LEFT : SADDLE_RIGHT;
@@ -78,7 +91,7 @@ static place_t place_at(const saddle_cycle_t *cycle, const place_t *reference, f
 static void reshape(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_quarter_t quarter,
                     saddle_sin_cos_t phase, const place_t *actual)
 {
-    const float x_m = saddle_position_to_m(cycle->position);
+    const float x_m = cycle->x_m;
     const bool before = saddle_cycle_before_landing(cycle);
     const float rest_m = before ? quarter.length_m - x_m : -x_m;
     cycle->quarter = quarter;
@@ -126,22 +139,20 @@ static void lift_off(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_
                      float speed_m_s, saddle_sin_cos_t phase)
 {
     const saddle_side_t foot = saddle_other_side(cycle->quarter.stance);
-    const float x_m = saddle_position_to_m(cycle->position);
     saddle_swing_t *swing = &cycle->swing;
     swing->lift_progress = saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f;
     swing->land_progress = cycle->last_swing ? 0.5f : 1.0f;
     swing->clearance_m = model->config.swing_clearance_m;
     swing->line_y_m = swing_line_y_m(cycle, model, foot, speed_m_s);
     const saddle_sample_t line =
-        saddle_swing_line(swing, x_m, saddle_com_lateral(&cycle->quarter, phase));
+        saddle_swing_line(swing, cycle->x_m, saddle_com_lateral(&cycle->quarter, phase));
     swing->offset_m.x = lifted_m.x - line.value;
     swing->offset_m.y = lifted_m.y - swing->line_y_m;
 }
 
 static float shaping_speed_m_s(const saddle_cycle_t *cycle)
 {
-    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
-    return speed_m_s > SPEED_MIN_M_S ? speed_m_s : SPEED_MIN_M_S;
+    return saddle_larger(cycle->profile.speed_m_s, SPEED_MIN_M_S);
 }
 
 static float length_m(float x_m, float y_m, float z_m)
@@ -195,7 +206,7 @@ static void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model, sadd
 
     cycle->phase++;
     cycle->step_count++;
-    cycle->position = -cycle->quarter_length;
+    move_to(cycle, -cycle->quarter_length);
     cycle->origin_x_nm += 2 * saddle_position_to_nm(cycle->quarter_length);
     cycle->stance_y_m += step_y_m;
     cycle->heel_strike_rad = cycle->next_heel_strike_rad;
@@ -211,11 +222,11 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
                         const saddle_cycle_start_t *start)
 {
     const saddle_side_t stance = stance_of_phase(start->phase);
-    const float speed_m_s = saddle_speed_to_m_s(start->speed);
     const place_t actual = {{start->com_y_m, 0.0f}, {start->com_z_m, 0.0f}};
     const bool beside = start->phase % 2u == 0u;
     const saddle_sin_cos_t phase = beside ? SADDLE_PHASE_FOOT : SADDLE_PHASE_LANDED;
-    cycle->profile.speed = start->speed;
+    saddle_profile_set_speed(&cycle->profile, start->speed);
+    const float speed_m_s = cycle->profile.speed_m_s;
     cycle->heel_strike_rad = 0.0f;
     plan_heel_strike(cycle, model, start->heel_strike_rad);
     cycle->phase = start->phase;
@@ -227,7 +238,7 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
     cycle->quarter_length = beside
                                 ? saddle_half_step(model, saddle_other_side(stance), start->speed)
                                 : saddle_position_from_m(-0.5f * start->other_m.x);
-    cycle->position = beside ? 0 : -cycle->quarter_length;
+    move_to(cycle, beside ? 0 : -cycle->quarter_length);
     cycle->quarter = saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
                                     saddle_magnitude(start->other_m.y), speed_m_s);
     cycle->swing.path_width_m = cycle->quarter.width_m;
@@ -252,8 +263,7 @@ void saddle_cycle_stand(saddle_cycle_t *cycle, saddle_side_t stance, float stanc
 
 void saddle_cycle_set_pace(saddle_cycle_t *cycle, float speed_m_s, float rate_m_s2)
 {
-    cycle->profile.target = saddle_speed_from_m_s(speed_m_s);
-    cycle->profile.rate_m_s2 = rate_m_s2;
+    saddle_profile_aim(&cycle->profile, speed_m_s, rate_m_s2);
 }
 
 void saddle_cycle_set_last_swing(saddle_cycle_t *cycle, bool last_swing)
@@ -273,7 +283,7 @@ static bool comes_to_rest(const saddle_cycle_t *cycle, uint32_t dt_us, uint32_t 
     if (!cycle->last_swing || saddle_cycle_before_landing(cycle) || cycle->profile.target != 0) {
         return false;
     }
-    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    const float speed_m_s = cycle->profile.speed_m_s;
     const float distance_m = saddle_cycle_distance_to_via_point_m(cycle);
     const float time_us = speed_m_s > 0.0f ? 2.0e6f * distance_m / speed_m_s : 0.0f;
     if (time_us > (float)dt_us) {
@@ -289,8 +299,7 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model
     uint32_t rest_us = 0;
     *arrived = comes_to_rest(cycle, dt_us, &rest_us);
     if (*arrived) {
-        cycle->profile.speed = 0;
-        cycle->position = 0;
+        rest_beside_foot(cycle);
         return rest_us;
     }
     const saddle_speed_profile_t before = cycle->profile;
@@ -304,7 +313,7 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model
         }
         distance -= to_end;
         distance_m += saddle_position_to_m(to_end);
-        cycle->position = end;
+        move_to(cycle, end);
         const saddle_fixed_t speed = saddle_profile_speed_after(&before, distance_m);
         if (saddle_cycle_before_landing(cycle)) {
             pass_saddle(cycle, model, speed, heel_strike_rad);
@@ -312,10 +321,9 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model
             pass_foot(cycle, model, speed);
         }
     }
-    cycle->position += distance;
+    move_to(cycle, cycle->position + distance);
     if (!saddle_cycle_before_landing(cycle) && cycle->position > 0) {
-        cycle->position = 0; /* a last swing stays beside the stance foot */
-        cycle->profile.speed = 0;
+        rest_beside_foot(cycle);
     }
     return 0;
 }
@@ -337,7 +345,7 @@ static float swing_progress(const saddle_cycle_t *cycle, float progress)
 static void swing_foot(const saddle_cycle_t *cycle, float x_m, saddle_sin_cos_t phase,
                        float progress, saddle_swing_state_t *foot)
 {
-    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    const float speed_m_s = cycle->profile.speed_m_s;
     const saddle_swing_place_t place = {
         .progress = progress,
         .rate_hz = 0.5f * speed_m_s / cycle->quarter.length_m,
@@ -371,7 +379,7 @@ static bool landing_usable(const saddle_cycle_t *cycle, const saddle_model_t *mo
 static void redirect_swing(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t foot_m,
                            float speed_m_s, saddle_sin_cos_t phase)
 {
-    const float x_m = saddle_position_to_m(cycle->position);
+    const float x_m = cycle->x_m;
     const float fade = 1.0f - saddle_min_jerk(2.0f * air_after_landing(cycle, x_m));
     saddle_swing_t *swing = &cycle->swing;
     swing->line_y_m =
@@ -385,9 +393,8 @@ static void redirect_swing(saddle_cycle_t *cycle, const saddle_model_t *model, s
 /* A last swing that ends after distance_m comes to rest no harder than allowed. */
 static bool can_end(const saddle_cycle_t *cycle, const saddle_model_t *model, float distance_m)
 {
-    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
     return !cycle->last_swing ||
-           saddle_can_brake(speed_m_s, model->config.acceleration_m_s2, distance_m);
+           saddle_can_brake(cycle->profile.speed_m_s, model->config.acceleration_m_s2, distance_m);
 }
 
 bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m)
@@ -395,7 +402,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
     const saddle_side_t stance = cycle->quarter.stance;
     const float dx_m = step_m.x - cycle->last_step_m.x;
     const float dy_m = step_m.y - cycle->last_step_m.y;
-    const float old_x_m = saddle_position_to_m(cycle->position);
+    const float old_x_m = cycle->x_m;
     if (saddle_cycle_before_landing(cycle) || -2.0f * old_x_m < cycle->quarter.length_m ||
         air_after_landing(cycle, old_x_m) > LANDING_AIR_MAX) {
         return false;
@@ -416,16 +423,15 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
     swing_foot(cycle, old_x_m, old_phase, swing_progress(cycle, quarter_progress(cycle, old_x_m)),
                &foot);
     const saddle_vec2_t swing_m = {foot.position_m.x - dx_m, foot.position_m.y - dy_m};
-    cycle->position = saddle_position_from_m(x_m);
+    move_to(cycle, saddle_position_from_m(x_m));
     cycle->quarter_length = saddle_position_from_m(length_m);
     cycle->origin_x_nm += (int64_t)(int32_t)(1.0e9f * dx_m);
     cycle->stance_y_m += dy_m;
     cycle->last_step_m = step_m;
-    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    const float speed_m_s = cycle->profile.speed_m_s;
     const saddle_quarter_t quarter =
         saddle_quarter(model, stance, length_m, saddle_magnitude(step_m.y), speed_m_s);
-    const saddle_sin_cos_t phase =
-        saddle_quarter_phase(&quarter, saddle_position_to_m(cycle->position));
+    const saddle_sin_cos_t phase = saddle_quarter_phase(&quarter, cycle->x_m);
     reshape(cycle, model, quarter, phase, &place);
     redirect_swing(cycle, model, swing_m, speed_m_s, phase);
     return true;
@@ -488,7 +494,7 @@ static float swing_pitch_rad(const saddle_cycle_t *cycle, const saddle_model_t *
 
 float saddle_cycle_com_y_m(const saddle_cycle_t *cycle, const saddle_model_t *model)
 {
-    const float x_m = saddle_position_to_m(cycle->position);
+    const float x_m = cycle->x_m;
     const place_t reference =
         reference_at(cycle, model, saddle_quarter_phase(&cycle->quarter, x_m));
     return place_at(cycle, &reference, x_m).lateral.value;
@@ -504,8 +510,8 @@ float saddle_cycle_strike_lead_m(const saddle_cycle_t *cycle, const saddle_model
 void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
                        saddle_pose_t *pose)
 {
-    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
-    const float x_m = saddle_position_to_m(cycle->position);
+    const float speed_m_s = cycle->profile.speed_m_s;
+    const float x_m = cycle->x_m;
     const float quarter_m = cycle->quarter.length_m;
     const bool before = saddle_cycle_before_landing(cycle);
     const saddle_sin_cos_t phase = saddle_quarter_phase(&cycle->quarter, x_m);

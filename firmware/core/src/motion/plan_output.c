@@ -51,7 +51,7 @@ static float half_step_to_landing_m(const saddle_cycle_t *cycle, const saddle_mo
 /* A last swing brakes evenly, to rest at its end: twice the time that its speed would take. */
 static float time_of_last_swing_s(const saddle_cycle_t *cycle, float distance_m)
 {
-    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    const float speed_m_s = cycle->profile.speed_m_s;
     return speed_m_s > 0.0f ? saddle_clamp(2.0f * distance_m / speed_m_s, 0.0f, SADDLE_TIME_MAX_S)
                             : 0.0f;
 }
@@ -159,7 +159,7 @@ static uint32_t write_walking(const saddle_planner_t *planner, const saddle_mode
     saddle_pose_t pose;
     saddle_cycle_pose(cycle, model, &pose);
     const float theta_rad = SADDLE_HALF_PI * ((float)cycle->phase + pose.progress);
-    plan->speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    plan->speed_m_s = cycle->profile.speed_m_s;
     plan->step_length_m = 2.0f * cycle->quarter.length_m;
     plan->step_width_m = cycle->quarter.width_m;
     plan->phase = cycle->phase;

@@ -191,7 +191,7 @@ void saddle_planner_advance(saddle_planner_t *planner, const saddle_model_t *mod
 
 float saddle_planner_speed_m_s(const saddle_planner_t *planner)
 {
-    return saddle_stands(planner) ? 0.0f : saddle_speed_to_m_s(planner->cycle.profile.speed);
+    return saddle_stands(planner) ? 0.0f : planner->cycle.profile.speed_m_s;
 }
 
 /* The measured landing, once, as soon as the new stance foot is on the ground. */

@@ -11,9 +11,27 @@
 /* A target that is not approached. */
 #define DISTANCE_NEVER_M 1.0e9f
 
+void saddle_profile_set_speed(saddle_speed_profile_t *profile, saddle_fixed_t speed)
+{
+    profile->speed = speed;
+    profile->speed_m_s = saddle_speed_to_m_s(speed);
+}
+
+void saddle_profile_aim(saddle_speed_profile_t *profile, float speed_m_s, float rate_m_s2)
+{
+    if (speed_m_s != profile->target_m_s) {
+        profile->target = saddle_speed_from_m_s(speed_m_s);
+        profile->target_m_s = saddle_speed_to_m_s(profile->target);
+    }
+    profile->rate_m_s2 = rate_m_s2;
+}
+
 /* [E23] */
 saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t dt_us)
 {
+    if (profile->speed == profile->target) {
+        return profile->speed * (int64_t)dt_us;
+    }
     const float rate_m_s2 = saddle_clamp(profile->rate_m_s2, 0.0f, RATE_MAX_M_S2);
     const float wanted_m_s = saddle_speed_to_m_s(profile->target - profile->speed);
     const float dt_s = (float)dt_us * 1.0e-6f;
@@ -21,11 +39,12 @@ saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t 
     float change_time_s = dt_s;
     if (saddle_magnitude(wanted_m_s) <= rate_m_s2 * dt_s) {
         change_time_s = rate_m_s2 > 0.0f ? saddle_magnitude(wanted_m_s) / rate_m_s2 : 0.0f;
-        profile->speed = profile->target;
+        saddle_profile_set_speed(profile, profile->target);
     } else {
-        const saddle_fixed_t change = saddle_speed_change(rate_m_s2, dt_us);
-        change_m_s = saddle_speed_to_m_s(wanted_m_s < 0.0f ? -change : change);
-        profile->speed += wanted_m_s < 0.0f ? -change : change;
+        const saddle_fixed_t rise = saddle_speed_change(rate_m_s2, dt_us);
+        const saddle_fixed_t change = wanted_m_s < 0.0f ? -rise : rise;
+        change_m_s = saddle_speed_to_m_s(change);
+        saddle_profile_set_speed(profile, profile->speed + change);
     }
     return profile->speed * (int64_t)dt_us -
            saddle_position_from_m(0.5f * change_m_s * change_time_s);
@@ -50,14 +69,23 @@ static float change_distance_m(const saddle_pace_t *pace)
     return difference_m2_s2 / (2.0f * pace->acceleration_m_s2);
 }
 
+/* Time in which the speed goes from one to another over a distance at an even rate. */
+static float even_change_s(float from_m_s, float to_m_s, float distance_m)
+{
+    const float mean_m_s = 0.5f * (from_m_s + to_m_s);
+    return mean_m_s > 0.0f ? distance_m / mean_m_s : SADDLE_TIME_MAX_S;
+}
+
 saddle_pace_t saddle_pace(const saddle_speed_profile_t *profile)
 {
     saddle_pace_t pace;
-    pace.speed_m_s = saddle_speed_to_m_s(profile->speed);
-    pace.target_m_s = saddle_speed_to_m_s(profile->target);
+    pace.speed_m_s = profile->speed_m_s;
+    pace.target_m_s = profile->target_m_s;
     pace.acceleration_m_s2 =
         profile->target < profile->speed ? -profile->rate_m_s2 : profile->rate_m_s2;
     pace.change_m = change_distance_m(&pace);
+    pace.change_s =
+        pace.change_m > 0.0f ? even_change_s(pace.speed_m_s, pace.target_m_s, pace.change_m) : 0.0f;
     return pace;
 }
 
@@ -70,6 +98,9 @@ static float speed_after_m_s(const saddle_pace_t *pace, float distance_m)
 
 saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile, float distance_m)
 {
+    if (profile->speed == profile->target) {
+        return profile->target;
+    }
     const saddle_pace_t pace = saddle_pace(profile);
     if (distance_m >= pace.change_m) {
         return profile->target;
@@ -85,17 +116,15 @@ saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile,
 
 float saddle_pace_time_s(const saddle_pace_t *pace, float distance_m)
 {
-    const bool changing = distance_m < pace->change_m;
-    const float changing_m = changing ? distance_m : pace->change_m;
-    const float then_m_s = changing ? speed_after_m_s(pace, distance_m) : pace->target_m_s;
-    const float mean_m_s = 0.5f * (pace->speed_m_s + then_m_s);
-    const float rest_m = distance_m - changing_m;
     float time_s = 0.0f;
-    if (changing_m > 0.0f) {
-        time_s += mean_m_s > 0.0f ? changing_m / mean_m_s : SADDLE_TIME_MAX_S;
+    if (distance_m >= pace->change_m) {
+        const float rest_m = distance_m - pace->change_m;
+        time_s = pace->change_s;
+        if (rest_m > 0.0f) {
+            time_s += pace->target_m_s > 0.0f ? rest_m / pace->target_m_s : SADDLE_TIME_MAX_S;
+        }
+    } else if (distance_m > 0.0f) {
+        time_s = even_change_s(pace->speed_m_s, speed_after_m_s(pace, distance_m), distance_m);
     }
-    if (rest_m > 0.0f) {
-        time_s += pace->target_m_s > 0.0f ? rest_m / pace->target_m_s : SADDLE_TIME_MAX_S;
-    }
-    return saddle_clamp(time_s, 0.0f, SADDLE_TIME_MAX_S);
+    return saddle_smaller(time_s, SADDLE_TIME_MAX_S);
 }

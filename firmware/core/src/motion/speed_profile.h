@@ -4,6 +4,12 @@
 
 #include <saddlewalk/private/context.h>
 
+/** From now on at that speed, >= 0. */
+void saddle_profile_set_speed(saddle_speed_profile_t *profile, saddle_fixed_t speed);
+
+/** From now on towards a speed at a rate. */
+void saddle_profile_aim(saddle_speed_profile_t *profile, float speed_m_s, float rate_m_s2);
+
 /** Advance by dt_us; returns the distance. Exact at constant speed, else to about 1e-10 m. */
 saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t dt_us);
 
@@ -17,7 +23,8 @@ bool saddle_can_brake(float speed_m_s, float rate_m_s2, float distance_m);
 typedef struct {
     float speed_m_s, target_m_s;
     float acceleration_m_s2; /**< signed, until the target is reached */
-    float change_m;          /**< distance on which it is reached */
+    float change_m;          /**< distance on which it is reached, */
+    float change_s;          /**< and time */
 } saddle_pace_t;
 
 saddle_pace_t saddle_pace(const saddle_speed_profile_t *profile);

@@ -39,7 +39,7 @@ static float latest_braking_speed_m_s(const saddle_model_t *model, float distanc
 void saddle_plan_stop(saddle_planner_t *planner, const saddle_model_t *model)
 {
     saddle_cycle_t *cycle = &planner->cycle;
-    const float speed_m_s = saddle_speed_to_m_s(cycle->profile.speed);
+    const float speed_m_s = cycle->profile.speed_m_s;
     choose_last_swing(planner, model, speed_m_s);
     const float distance_m = stopping_distance_m(cycle);
     const float latest_m_s = latest_braking_speed_m_s(model, distance_m);

@@ -79,9 +79,10 @@ typedef struct {
 
 /** The speed goes to its target at a constant rate and stays there. */
 typedef struct {
-    saddle_fixed_t speed;  /**< now, >= 0 */
-    saddle_fixed_t target; /**< >= 0 */
-    float rate_m_s2;       /**< >= 0, magnitude */
+    saddle_fixed_t speed;        /**< now, >= 0 */
+    saddle_fixed_t target;       /**< >= 0 */
+    float speed_m_s, target_m_s; /**< the same as floats */
+    float rate_m_s2;             /**< >= 0, magnitude */
 } saddle_speed_profile_t;
 
 /** One swing, relative to the stance CoP. Progress runs from 0 at one saddle via point over 1/2
@@ -107,6 +108,7 @@ typedef struct {
     saddle_speed_profile_t profile;
     saddle_fixed_t position; /**< CoM x, in [-quarter, quarter] */
     saddle_fixed_t quarter_length;
+    float x_m; /**< the position as a float */
     saddle_quarter_t quarter;
     uint8_t phase;         /**< 0 to 3; even: towards the saddle via point */
     bool last_swing;       /**< the running step ends beside the stance foot: a stop */
