@@ -34,7 +34,7 @@ static void test_path_is_the_equation_s(void)
             const double amplitude = sign * (double)quarter.amplitude_m;
             for (int k = -100; k <= 100; k++) {
                 const double x = 0.01 * k * (double)quarter.length_m;
-                const saddle_sin_cos_t phase = saddle_quarter_phase(&quarter, (float)x);
+                const saddle_sin_cos_t phase = saddle_quarter_phase(quarter.length_m, (float)x);
                 const saddle_sample_t lateral = saddle_com_lateral(&quarter, phase);
                 const double stance_y = 0.5 * sign * (double)quarter.width_m;
                 TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, sin(rate * x), phase.sin);
@@ -72,7 +72,7 @@ static void test_phase_ends_with_the_quarter_and_is_known_at_via_points(void)
                  {-1.01f, SADDLE_PHASE_LANDED}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         const saddle_sin_cos_t phase =
-            saddle_quarter_phase(&quarter, table[i].share * quarter.length_m);
+            saddle_quarter_phase(quarter.length_m, table[i].share * quarter.length_m);
         ASSERT_SAME_FLOAT(table[i].phase.sin, phase.sin);
         ASSERT_SAME_FLOAT(table[i].phase.cos, phase.cos);
     }
@@ -153,7 +153,7 @@ static void test_default_shape_is_the_paper_s_to_the_bit(void)
     const saddle_model_t *model = model_of(&config);
     for (int k = -100; k <= 100; k++) {
         const saddle_sin_cos_t phase =
-            saddle_quarter_phase(&quarter, 0.01f * (float)k * quarter.length_m);
+            saddle_quarter_phase(quarter.length_m, 0.01f * (float)k * quarter.length_m);
         const saddle_sample_t paper = saddle_com_lateral(&quarter, phase);
         for (int last_swing = 0; last_swing <= 1; last_swing++) {
             const saddle_sample_t person =

@@ -49,6 +49,12 @@ static double amplitude(double width, double v)
     return fmin(width / (2.0 * PI * v), width / PI);
 }
 
+static saddle_expectation_t expect(const saddle_step_t *step, float x_m)
+{
+    const saddle_step_place_t place = saddle_step_place(step, x_m);
+    return saddle_expect(model_of(&config), step, &place);
+}
+
 static saddle_step_t steady_step(saddle_side_t stance, double v)
 {
     const double side = stance == SADDLE_LEFT ? -1.0 : 1.0;
@@ -85,8 +91,7 @@ static void test_steady_step_is_the_paper_s_walk_at_every_phase(void)
             const saddle_step_t step = steady_step(stance, v);
             for (int k = -20; k <= 20; k++) {
                 const double x = half * k / 20.0;
-                const saddle_expectation_t expected =
-                    saddle_expect(model_of(&config), &step, (float)x);
+                const saddle_expectation_t expected = expect(&step, (float)x);
                 assert_on_path(stance, v, step_width(v), half, x, &expected.now);
                 assert_on_path(stance, v, step_width(v), half, half, &expected.landing);
                 TEST_ASSERT_DOUBLE_WITHIN(2e-6, (half - x) / v, expected.time_s);
@@ -116,8 +121,7 @@ static void assert_plan_fulfils(const saddle_context_t *context, uint64_t now_us
 {
     const saddle_vec3_t *stance = &now->foot_m[now->support];
     const saddle_step_t step = step_of(now);
-    const saddle_expectation_t expected =
-        saddle_expect(model_of(&config), &step, now->com_m.x - stance->x);
+    const saddle_expectation_t expected = expect(&step, now->com_m.x - stance->x);
     TEST_ASSERT_DOUBLE_WITHIN(2e-6, (double)now->com_m.y - (double)stance->y, expected.now.com_m.y);
     TEST_ASSERT_DOUBLE_WITHIN(2e-6, now->com_velocity_m_s.y, expected.now.velocity_m_s.y);
     TEST_ASSERT_DOUBLE_WITHIN(2e-6, now->time_to_toe_off_s, expected.time_s);
@@ -180,8 +184,8 @@ static void test_quarters_have_shapes_of_their_own(void)
     for (int k = 1; k <= 10; k++) {
         const double behind = -0.04 * k;
         const double ahead = 0.025 * k;
-        const saddle_expectation_t before = saddle_expect(model_of(&config), &step, (float)behind);
-        const saddle_expectation_t after = saddle_expect(model_of(&config), &step, (float)ahead);
+        const saddle_expectation_t before = expect(&step, (float)behind);
+        const saddle_expectation_t after = expect(&step, (float)ahead);
         assert_on_path(SADDLE_RIGHT, v, 0.2, 0.4, behind, &before.now);
         assert_on_path(SADDLE_RIGHT, v, 0.12, 0.25, ahead, &after.now);
         assert_on_path(SADDLE_RIGHT, v, 0.12, 0.25, 0.25, &before.landing);
@@ -198,10 +202,8 @@ static void test_com_outside_the_step_is_at_its_nearer_end(void)
     const saddle_step_t step = steady_step(SADDLE_LEFT, v);
     const float far_m[] = {0.01f, 0.3f, 2.5f};
     for (size_t i = 0; i < COUNT_OF(far_m); i++) {
-        const saddle_expectation_t behind =
-            saddle_expect(model_of(&config), &step, (float)-half - far_m[i]);
-        const saddle_expectation_t beyond =
-            saddle_expect(model_of(&config), &step, (float)half + far_m[i]);
+        const saddle_expectation_t behind = expect(&step, (float)-half - far_m[i]);
+        const saddle_expectation_t beyond = expect(&step, (float)half + far_m[i]);
         assert_on_path(SADDLE_LEFT, v, step_width(v), half, -half, &behind.now);
         assert_on_path(SADDLE_LEFT, v, step_width(v), half, half, &beyond.now);
         TEST_ASSERT_DOUBLE_WITHIN(2e-6, 2.0 * half / v, behind.time_s);
@@ -214,9 +216,9 @@ static void test_time_to_the_landing_is_at_most_the_foresight(void)
     config.prediction_horizon_s = 0.3f;
     const saddle_step_t step = steady_step(SADDLE_LEFT, 0.3);
     const double half = half_step(0.3);
-    ASSERT_SAME_FLOAT(0.3f, saddle_expect(model_of(&config), &step, 0.0f).time_s);
+    ASSERT_SAME_FLOAT(0.3f, expect(&step, 0.0f).time_s);
     const float near_end = (float)(half - 0.03);
-    TEST_ASSERT_DOUBLE_WITHIN(2e-6, 0.1, saddle_expect(model_of(&config), &step, near_end).time_s);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-6, 0.1, expect(&step, near_end).time_s);
 }
 
 /* A last step ends beside the stance foot: a quarter without length is not divided by. */
@@ -228,8 +230,7 @@ static void test_step_that_ends_beside_the_stance_foot_is_finite(void)
                                 .width_behind_m = 0.2f,
                                 .landing_m = {0.0f, -0.2f}};
     for (int k = -10; k <= 10; k++) {
-        const saddle_expectation_t expected =
-            saddle_expect(model_of(&config), &step, 0.05f * (float)k);
+        const saddle_expectation_t expected = expect(&step, 0.05f * (float)k);
         const float numbers[] = {expected.now.com_m.x,
                                  expected.now.com_m.y,
                                  expected.now.velocity_m_s.x,

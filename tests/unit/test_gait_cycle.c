@@ -41,6 +41,13 @@ static uint32_t advance(uint32_t dt_us, bool *arrived)
     return saddle_cycle_advance(&cycle, model_of(&config), 0.1f, dt_us, arrived);
 }
 
+static void put_at(saddle_fixed_t position)
+{
+    bool arrived;
+    cycle.position = position;
+    advance(0, &arrived);
+}
+
 static saddle_pose_t pose(void)
 {
     saddle_pose_t pose;
@@ -153,8 +160,7 @@ static void test_last_swing_that_has_lost_its_speed_has_arrived(void)
     bool arrived = false;
     begin(1, 0.3f, false);
     cycle.last_swing = true;
-    cycle.position = -1000 * (saddle_fixed_t)4398046511; /* 1 um before */
-    cycle.x_m = saddle_position_to_m(cycle.position);
+    put_at(-1000 * (saddle_fixed_t)4398046511); /* 1 um before */
     saddle_profile_set_speed(&cycle.profile, 0);
     saddle_cycle_set_pace(&cycle, 0.0f, 0.5f);
     TEST_ASSERT_EQUAL_UINT32(80000, advance(80000, &arrived));
@@ -215,7 +221,7 @@ static void test_landings_that_are_refused_change_nothing(void)
 static void test_landing_beside_the_stance_foot_divides_nothing_by_zero(void)
 {
     walk_to_landing(true, 0);
-    cycle.position = 0;
+    put_at(0);
     TEST_ASSERT_FALSE(land_at(0.05f, 0.0f));
 }
 

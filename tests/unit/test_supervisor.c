@@ -51,6 +51,7 @@ void setUp(void)
                                         .half_behind_m = 0.35f,
                                         .width_behind_m = 0.1f,
                                         .landing_m = {0.7f, -0.1f}}};
+    intent.place = saddle_step_place(&intent.step, 0.0f);
 }
 
 void tearDown(void) {}

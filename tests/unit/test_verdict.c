@@ -148,6 +148,7 @@ static void plan(const walk_t *walk, double x)
                  .landing_m = rounded(landing_of(walk))},
         .com = {rounded(planned.com), rounded(planned.velocity)},
     };
+    intent.place = saddle_step_place(&intent.step, intent.com.com_m.x);
 }
 
 /* What a wearer who has walked so for a while is known by. */

@@ -96,16 +96,12 @@ static uint32_t take_command(saddle_context_t *context, const saddle_input_t *in
 }
 
 /* Where the wearer is to be. */
-static void read_intent(const saddle_plan_t *plan, saddle_intent_t *intent)
+static void read_intent(const saddle_planner_t *planner, const saddle_plan_t *plan,
+                        saddle_intent_t *intent)
 {
     const saddle_side_t stance = (saddle_side_t)plan->support;
     const saddle_vec3_t *stance_m = &plan->foot_m[stance];
     const saddle_vec3_t *other_m = &plan->foot_m[saddle_other_side(stance)];
-    saddle_vec2_t origin_m = {stance_m->x, stance_m->y};
-    if (!(plan->speed_m_s > 0.0f)) {
-        origin_m.x += 0.5f * (other_m->x - stance_m->x);
-        origin_m.y += 0.5f * (other_m->y - stance_m->y);
-    }
     intent->leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u;
     intent->walking = plan->speed_m_s > 0.0f;
     intent->step.stance = stance;
@@ -114,8 +110,10 @@ static void read_intent(const saddle_plan_t *plan, saddle_intent_t *intent)
     intent->step.width_behind_m = plan->step_width_m;
     intent->step.landing_m.x = plan->landing_m.x;
     intent->step.landing_m.y = plan->landing_m.y - stance_m->y;
-    intent->com.com_m.x = plan->com_m.x - origin_m.x;
-    intent->com.com_m.y = plan->com_m.y - origin_m.y;
+    intent->place.x_m = plan->com_m.x;
+    intent->place.phase = saddle_planner_phase(planner);
+    intent->com.com_m.x = plan->com_m.x - (stance_m->x + 0.5f * (other_m->x - stance_m->x));
+    intent->com.com_m.y = plan->com_m.y - (stance_m->y + 0.5f * (other_m->y - stance_m->y));
     intent->com.velocity_m_s.x = plan->com_velocity_m_s.x;
     intent->com.velocity_m_s.y = plan->com_velocity_m_s.y;
 }
@@ -139,7 +137,7 @@ static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_se
                                       saddle_output_t *output)
 {
     saddle_intent_t intent;
-    read_intent(&output->plan, &intent);
+    read_intent(&context->planner, &output->plan, &intent);
     output->faults |=
         saddle_supervisor_update(&context->supervisor, &context->model, sensed, &intent, output);
     output->walk = context->supervisor.learning.walk;

@@ -138,14 +138,15 @@ static void predict(const saddle_model_t *model, const saddle_expectation_t *exp
         &ebos, saddle_vec2_add(xcom_of(model, &expected->landing), grown_xcom_m));
 }
 
-/* Against a step, in the phase where its CoM is x_m from the stance foot. */
+/* Against a step, in the phase where its CoM is at a place. */
 static void compare_step(const saddle_model_t *model, const saddle_wearer_t *wearer,
-                         const saddle_step_t *step, float x_m, saddle_verdict_t *verdict)
+                         const saddle_step_t *step, const saddle_step_place_t *place,
+                         saddle_verdict_t *verdict)
 {
     const saddle_posture_t *posture = wearer->posture;
     const saddle_side_t stance = step->stance;
     const saddle_side_t other = saddle_other_side(stance);
-    saddle_expectation_t expected = saddle_expect(model, step, x_m);
+    saddle_expectation_t expected = saddle_expect(model, step, place);
     const saddle_vec2_t stance_m = posture->cop_m[stance];
     const saddle_vec2_t trailing_m = saddle_vec2_sub(posture->cop_m[other], stance_m);
     const saddle_growth_t growth =
@@ -170,7 +171,7 @@ bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
 {
     const saddle_step_tracker_t *steps = wearer->steps;
     if (matches_planned_step(wearer, intent)) {
-        compare_step(model, wearer, &intent->step, intent->com.com_m.x, verdict);
+        compare_step(model, wearer, &intent->step, &intent->place, verdict);
         return steps->stance == (uint8_t)intent->step.stance;
     }
     const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
@@ -178,8 +179,9 @@ bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
     if (walks && saddle_in_range(speed_m_s, SPEED_MIN_M_S, SPEED_MAX_M_S)) {
         const saddle_posture_t *posture = wearer->posture;
         const saddle_step_t own = nominal_step(model, steps, speed_m_s);
-        const float x_m = posture->com.com_m.x - posture->cop_m[own.stance].x;
-        compare_step(model, wearer, &own, x_m, verdict);
+        const saddle_step_place_t place =
+            saddle_step_place(&own, posture->com.com_m.x - posture->cop_m[own.stance].x);
+        compare_step(model, wearer, &own, &place, verdict);
     } else if (!walks && (intent->leads || steps->stands)) {
         compare_standing(model, wearer, &intent->com, verdict);
     }

@@ -11,11 +11,11 @@
 
 /** What the supervisor takes from the planner: where the wearer is to be. */
 typedef struct {
-    bool leads;             /**< a walk is planned, or has been walked since the start */
-    bool walking;           /**< else both feet stand */
-    saddle_step_t step;     /**< the planned one, while walking */
-    saddle_com_state_t com; /**< planned, from the planned stance CoP; while both feet stand from
-                                 midway between them */
+    bool leads;                /**< a walk is planned, or has been walked since the start */
+    bool walking;              /**< else both feet stand */
+    saddle_step_t step;        /**< the planned one, while walking, */
+    saddle_step_place_t place; /**< and where in it the plan is */
+    saddle_com_state_t com;    /**< planned, from midway between the feet, while both stand */
 } saddle_intent_t;
 
 /** What is known of the wearer at one instant. */

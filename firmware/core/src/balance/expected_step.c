@@ -24,30 +24,39 @@ static saddle_com_state_t state_at(const saddle_quarter_t *quarter, const saddle
     return state;
 }
 
+static float quarter_ahead_m(const saddle_step_t *step)
+{
+    return saddle_larger(0.5f * step->landing_m.x, QUARTER_MIN_M);
+}
+
+saddle_step_place_t saddle_step_place(const saddle_step_t *step, float x_m)
+{
+    const float within_m = saddle_clamp(x_m, -step->half_behind_m, 0.5f * step->landing_m.x);
+    const float quarter_m = within_m < 0.0f ? step->half_behind_m : quarter_ahead_m(step);
+    return (saddle_step_place_t){within_m, saddle_quarter_phase(quarter_m, within_m)};
+}
+
 /* [E28] */
 saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
-                                   float x_m)
+                                   const saddle_step_place_t *place)
 {
     const float half_ahead_m = 0.5f * step->landing_m.x;
     const saddle_quarter_t ahead =
-        saddle_quarter(model, step->stance, saddle_larger(half_ahead_m, QUARTER_MIN_M),
+        saddle_quarter(model, step->stance, quarter_ahead_m(step),
                        saddle_magnitude(step->landing_m.y), step->speed_m_s);
-    const float phase_m = saddle_clamp(x_m, -step->half_behind_m, half_ahead_m);
     saddle_quarter_t running = ahead;
-    if (phase_m < 0.0f) {
+    if (place->x_m < 0.0f) {
         running = saddle_quarter(model, step->stance, step->half_behind_m, step->width_behind_m,
                                  step->speed_m_s);
     }
     const bool last_swing = half_ahead_m <= QUARTER_MIN_M;
     const saddle_shape_t *shape = saddle_shape(model, last_swing);
     saddle_expectation_t expected;
-    expected.now = state_at(&running, shape, step->speed_m_s, phase_m,
-                            saddle_quarter_phase(&running, phase_m));
-    expected.landing =
-        state_at(&ahead, shape, step->speed_m_s, half_ahead_m,
-                 last_swing ? saddle_quarter_phase(&ahead, half_ahead_m) : PHASE_SADDLE);
+    expected.now = state_at(&running, shape, step->speed_m_s, place->x_m, place->phase);
+    expected.landing = state_at(&ahead, shape, step->speed_m_s, half_ahead_m,
+                                last_swing ? SADDLE_PHASE_FOOT : PHASE_SADDLE);
     expected.landing_m = step->landing_m;
-    expected.time_s = saddle_smaller((half_ahead_m - phase_m) / step->speed_m_s,
+    expected.time_s = saddle_smaller((half_ahead_m - place->x_m) / step->speed_m_s,
                                      model->config.prediction_horizon_s);
     expected.step_time_s = (half_ahead_m + step->half_behind_m) / step->speed_m_s;
     return expected;

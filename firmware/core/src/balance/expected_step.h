@@ -4,6 +4,7 @@
 #define SADDLEWALK_EXPECTED_STEP_H
 
 #include "balance/energy.h"
+#include "math/elementary.h"
 
 #include <saddlewalk/private/context.h>
 
@@ -25,9 +26,18 @@ typedef struct {
     float step_time_s;          /**< of a whole step */
 } saddle_expectation_t;
 
-/** [E28] The step at the phase of a CoM that is x_m from the stance CoP. */
+/** Where in a step the CoM is. */
+typedef struct {
+    float x_m;              /**< from the stance CoP */
+    saddle_sin_cos_t phase; /**< of the running quarter there, com_path.h */
+} saddle_step_place_t;
+
+/** Where a CoM is that is x_m from the stance CoP, or at the nearest end of the step. */
+saddle_step_place_t saddle_step_place(const saddle_step_t *step, float x_m);
+
+/** [E28] The step at the phase of a CoM. */
 saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
-                                   float x_m);
+                                   const saddle_step_place_t *place);
 
 /** How a deviation of the XCoM grows in a time, [E29] [E30]. */
 typedef struct {

@@ -10,9 +10,9 @@ const saddle_shape_t *saddle_shape(const saddle_model_t *model, bool last_swing)
     return last_swing ? &paper : &model->body.shape;
 }
 
-saddle_sin_cos_t saddle_quarter_phase(const saddle_quarter_t *quarter, float x_m)
+saddle_sin_cos_t saddle_quarter_phase(float quarter_m, float x_m)
 {
-    return saddle_sin_cos(SADDLE_HALF_PI * saddle_clamp(x_m / quarter->length_m, -1.0f, 1.0f));
+    return saddle_sin_cos(SADDLE_HALF_PI * saddle_clamp(x_m / quarter_m, -1.0f, 1.0f));
 }
 
 /* [E7] */

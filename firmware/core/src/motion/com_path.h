@@ -13,9 +13,9 @@
 #define SADDLE_PHASE_LANDING ((saddle_sin_cos_t){1.0f, -4.37113954e-8f})
 #define SADDLE_PHASE_LANDED ((saddle_sin_cos_t){-1.0f, -4.37113954e-8f})
 
-/** The same at the place x_m from the stance CoP, |x_m| <= length_m: of an angle in [-pi/2, pi/2] that
+/** The same at the place x_m from the stance CoP in a quarter of that length, |x_m| <= quarter_m: of an angle in [-pi/2, pi/2] that
  *  grows with the distance. */
-saddle_sin_cos_t saddle_quarter_phase(const saddle_quarter_t *quarter, float x_m);
+saddle_sin_cos_t saddle_quarter_phase(float quarter_m, float x_m);
 
 /** The person's shape; at the end of a walk, once its last swing has begun, the paper's: there the CoM
  *  comes to where it is beside the stance foot in standing. */

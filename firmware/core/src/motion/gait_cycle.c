@@ -32,16 +32,29 @@ bool saddle_cycle_before_landing(const saddle_cycle_t *cycle)
     return cycle->phase % 2u == 0u;
 }
 
+/* set_phase() follows, at the latest when the cycle has advanced. */
 static void move_to(saddle_cycle_t *cycle, saddle_fixed_t position)
 {
     cycle->position = position;
     cycle->x_m = saddle_position_to_m(position);
 }
 
+static void set_phase(saddle_cycle_t *cycle, saddle_sin_cos_t phase)
+{
+    cycle->sin_phase = phase.sin;
+    cycle->cos_phase = phase.cos;
+}
+
+saddle_sin_cos_t saddle_cycle_phase(const saddle_cycle_t *cycle)
+{
+    return (saddle_sin_cos_t){cycle->sin_phase, cycle->cos_phase};
+}
+
 /* The end of a last swing. */
 static void rest_beside_foot(saddle_cycle_t *cycle)
 {
     move_to(cycle, 0);
+    set_phase(cycle, SADDLE_PHASE_FOOT);
     saddle_profile_set_speed(&cycle->profile, 0);
 }
 
@@ -239,6 +252,7 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
                                 ? saddle_half_step(model, saddle_other_side(stance), start->speed)
                                 : saddle_position_from_m(-0.5f * start->other_m.x);
     move_to(cycle, beside ? 0 : -cycle->quarter_length);
+    set_phase(cycle, phase);
     cycle->quarter = saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
                                     saddle_magnitude(start->other_m.y), speed_m_s);
     cycle->swing.path_width_m = cycle->quarter.width_m;
@@ -322,6 +336,7 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model
         }
     }
     move_to(cycle, cycle->position + distance);
+    set_phase(cycle, saddle_quarter_phase(cycle->quarter.length_m, cycle->x_m));
     if (!saddle_cycle_before_landing(cycle) && cycle->position > 0) {
         rest_beside_foot(cycle);
     }
@@ -409,7 +424,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
     }
     const float x_m = old_x_m - dx_m;
     const float length_m = cycle->quarter.length_m * x_m / old_x_m;
-    const saddle_sin_cos_t old_phase = saddle_quarter_phase(&cycle->quarter, old_x_m);
+    const saddle_sin_cos_t old_phase = saddle_cycle_phase(cycle);
     const place_t old_reference = reference_at(cycle, model, old_phase);
     place_t place = place_at(cycle, &old_reference, old_x_m);
     place.lateral.value -= dy_m;
@@ -431,7 +446,8 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
     const float speed_m_s = cycle->profile.speed_m_s;
     const saddle_quarter_t quarter =
         saddle_quarter(model, stance, length_m, saddle_magnitude(step_m.y), speed_m_s);
-    const saddle_sin_cos_t phase = saddle_quarter_phase(&quarter, cycle->x_m);
+    const saddle_sin_cos_t phase = saddle_quarter_phase(length_m, cycle->x_m);
+    set_phase(cycle, phase);
     reshape(cycle, model, quarter, phase, &place);
     redirect_swing(cycle, model, swing_m, speed_m_s, phase);
     return true;
@@ -495,8 +511,7 @@ static float swing_pitch_rad(const saddle_cycle_t *cycle, const saddle_model_t *
 float saddle_cycle_com_y_m(const saddle_cycle_t *cycle, const saddle_model_t *model)
 {
     const float x_m = cycle->x_m;
-    const place_t reference =
-        reference_at(cycle, model, saddle_quarter_phase(&cycle->quarter, x_m));
+    const place_t reference = reference_at(cycle, model, saddle_cycle_phase(cycle));
     return place_at(cycle, &reference, x_m).lateral.value;
 }
 
@@ -514,7 +529,7 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
     const float x_m = cycle->x_m;
     const float quarter_m = cycle->quarter.length_m;
     const bool before = saddle_cycle_before_landing(cycle);
-    const saddle_sin_cos_t phase = saddle_quarter_phase(&cycle->quarter, x_m);
+    const saddle_sin_cos_t phase = saddle_cycle_phase(cycle);
     const place_t reference = reference_at(cycle, model, phase);
     const saddle_sample_t lateral = sum(reference.lateral, saddle_blend_at(&cycle->lateral, x_m));
     const float to_saddle_m = before ? quarter_m - x_m : quarter_m + x_m;

@@ -55,6 +55,9 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model,
 /** Whether the running quarter leads to a saddle via point, where the swing foot lands. */
 bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);
 
+/** Phase angle where the CoM is, com_path.h. */
+saddle_sin_cos_t saddle_cycle_phase(const saddle_cycle_t *cycle);
+
 /** Way to the end of the running quarter. */
 float saddle_cycle_distance_to_via_point_m(const saddle_cycle_t *cycle);
 

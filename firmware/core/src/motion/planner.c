@@ -7,6 +7,7 @@
 #include "model/gait_model.h"
 #include "model/model.h"
 #include "motion/gait_cycle.h"
+#include "motion/standing.h"
 #include "motion/stopping.h"
 
 #include <saddlewalk/saddlewalk.h>
@@ -192,6 +193,11 @@ void saddle_planner_advance(saddle_planner_t *planner, const saddle_model_t *mod
 float saddle_planner_speed_m_s(const saddle_planner_t *planner)
 {
     return saddle_stands(planner) ? 0.0f : planner->cycle.profile.speed_m_s;
+}
+
+saddle_sin_cos_t saddle_planner_phase(const saddle_planner_t *planner)
+{
+    return saddle_cycle_phase(&planner->cycle);
 }
 
 /* The measured landing, once, as soon as the new stance foot is on the ground. */

@@ -2,7 +2,7 @@
 #ifndef SADDLEWALK_PLANNER_H
 #define SADDLEWALK_PLANNER_H
 
-#include "motion/standing.h"
+#include "math/elementary.h"
 
 #include <saddlewalk/private/context.h>
 
@@ -24,6 +24,9 @@ uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_model_t *
 
 /** Let time pass, nothing else. */
 void saddle_planner_advance(saddle_planner_t *planner, const saddle_model_t *model, uint32_t dt_us);
+
+/** Phase angle of the running quarter, com_path.h. */
+saddle_sin_cos_t saddle_planner_phase(const saddle_planner_t *planner);
 
 /** Speed of the walk; 0 while both feet stand. */
 float saddle_planner_speed_m_s(const saddle_planner_t *planner);

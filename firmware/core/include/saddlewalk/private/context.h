@@ -108,7 +108,8 @@ typedef struct {
     saddle_speed_profile_t profile;
     saddle_fixed_t position; /**< CoM x, in [-quarter, quarter] */
     saddle_fixed_t quarter_length;
-    float x_m; /**< the position as a float */
+    float x_m;                  /**< the position as a float */
+    float sin_phase, cos_phase; /**< of the phase angle there, com_path.h */
     saddle_quarter_t quarter;
     uint8_t phase;         /**< 0 to 3; even: towards the saddle via point */
     bool last_swing;       /**< the running step ends beside the stance foot: a stop */
