@@ -54,6 +54,7 @@ WRITERS = [
     Writer("supervise --in {states} --config {toml}", "--out", "scores.csv"),
     Writer("replay {walk}", "--out", "scores.csv"),
     Writer("follow {walk} {other} --config {toml}", "--out", "follow.csv"),
+    Writer("follow {walk} {other} --config {toml}", "--json", "follow.json"),
     Writer("calibrate {walk} {other}", "--out", "person.toml"),
     Writer("calibrate {walk} {other}", "--header", "person.h"),
     Writer("bench --rounds 1", "--json", "bench.json"),

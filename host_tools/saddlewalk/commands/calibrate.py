@@ -12,7 +12,7 @@ from saddlewalk.outputs import add_output
 if TYPE_CHECKING:
     import numpy as np
 
-    from saddlewalk.gait.calibration import Fit
+    from saddlewalk.gait.fit import Fit
     from saddlewalk.gait.measures import WalkMeasures
 
 

@@ -1,23 +1,25 @@
 """`saddlewalk follow`: tracking error of recorded walks, by default and calibrated."""
 
 import argparse
+import json
 import math
 import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import ANKLES, add_body_options, load_config
+from saddlewalk.errors import UserError
 from saddlewalk.options import add_recordings, number_in
 from saddlewalk.outputs import add_output
 
 if TYPE_CHECKING:
-    from saddlewalk.gait.recording import Recording
-    from saddlewalk.gait.tracking_error import Deviation
+    from saddlewalk.gait.followed import Followed
+    from saddlewalk.gait.measures import WalkMeasures
     from saddlewalk.table import Cell
 
 RMS_COLUMNS = "com_y_m com_z_m com_z_shape_m swing_x_m landing_m heel_strike_s".split()
 COLUMNS = ["recording", "speed_m_s", "steps", "configuration", *RMS_COLUMNS, "limited"]
 WIDEST = 1000  # characters
-SHOWN = ("y\nmm", "z\nmm", "shape\nmm", "swing\nmm", "landing\nmm", "strike\nms")
 
 
 def add_parser(subparsers: Any) -> None:
@@ -25,9 +27,10 @@ def add_parser(subparsers: Any) -> None:
         "follow",
         help="tracking error of recorded walks, by default and calibrated",
         description="For each recorded walk, RMS of recorded minus planned with the paper's "
-        "defaults and after calibration: to that walk itself or, with --config, before. CoM y, "
-        "CoM z, its shape (without the mean difference), the swing foot's x from the stance foot "
-        "over the swing and at landing, and the time from passing the stance foot to heel strike.",
+        "defaults and after calibration: to that walk itself, with --leave-out also to the other "
+        "recordings, which must be of the same person, or, with --config, before. CoM y, CoM z, "
+        "its shape (without the mean difference), the swing foot's x from the stance foot over "
+        "the swing and at landing, and the time from passing the stance foot to heel strike.",
     )
     add_recordings(parser)
     add_body_options(parser)
@@ -38,83 +41,152 @@ def add_parser(subparsers: Any) -> None:
         metavar="DEG",
         help="foot angle at heel strike (default 10)",
     )
-    parser.add_argument("--ankle", choices=ANKLES, help="of the calibrated plan (default erf)")
+    parser.add_argument(
+        "--ankle", choices=ANKLES, help="of the calibrated plan (default: as it was calibrated)"
+    )
+    parser.add_argument(
+        "--leave-out",
+        action="store_true",
+        help="also calibrate to all recordings but the one that is followed",
+    )
     add_output(parser, "--out", metavar="FILE", help="the table as CSV")
+    add_output(
+        parser, "--json", metavar="FILE", help="errors, medians and shares within the goals as JSON"
+    )
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    from rich.console import Console
-
+    from saddlewalk.atomic_write import write_text
+    from saddlewalk.gait.followed import follow, summary
     from saddlewalk.gait.measures import measure
     from saddlewalk.gait.motion_capture import load_walk, read_markers
-    from saddlewalk.gait.tracking_error import deviation
     from saddlewalk.table import write_table
 
+    _check_leave_out(args)
     markers = read_markers(args.markers)
-    defaults = load_config(argparse.Namespace(**{**vars(args), "config": None}))
-    rows = []
-    for source in args.recordings:
-        recording = load_walk(source, markers)
-        walk = measure(recording)
-        for name, config in (("default", defaults), ("calibrated", _calibrated(args, walk))):
-            found = deviation(recording, config, args.hs_angle)
-            rows.append(_row(recording, walk.speed_m_s, name, found))
+    walks = [measure(load_walk(source, markers)) for source in args.recordings]
+    followed = follow(walks, _configurations(args, walks), args.hs_angle)
     if args.out:
-        write_table(args.out, COLUMNS, rows)
-    stream = sys.stderr if args.out == "-" else sys.stdout
-    console, table = Console(file=stream), _table(rows)
-    if not console.is_terminal:  # a file or a pipe has no width that names would have to fold to
-        console.width = table.__rich_measure__(
-            console, console.options.update(max_width=WIDEST)
-        ).maximum
-    console.print(table)
+        write_table(args.out, COLUMNS, [row for one in followed for row in _rows(one)])
+    if args.json:
+        write_text("--json", args.json, json.dumps(summary(followed), indent=2) + "\n")
+    _print(followed, sys.stderr if "-" in (args.out, args.json) else sys.stdout)
     return 0
 
 
-def _calibrated(args: argparse.Namespace, walk: Any) -> Any:
+def _check_leave_out(args: argparse.Namespace) -> None:
+    if args.leave_out and args.config:
+        raise UserError("--leave-out calibrates by itself: leave --config out")
+    if args.leave_out and len(args.recordings) < 2:
+        raise UserError("--leave-out needs two recordings of the same person or more")
+    if args.leave_out and len(set(args.recordings)) < len(args.recordings):
+        raise UserError("--leave-out: a recording is given twice and would not be left out")
+
+
+def _configurations(
+    args: argparse.Namespace, walks: "list[WalkMeasures]"
+) -> dict[str, Callable[[int], Any]]:
+    """By name, for the walk with an index; the default first, the most telling last."""
     from saddlewalk.gait.calibration import calibrate, checked
 
+    def calibrated(chosen: "list[WalkMeasures]") -> Any:
+        config = checked(calibrate(chosen, args.height, args.mass))
+        if args.ankle:
+            config.ankle = ANKLES[args.ankle]
+        return config
+
+    default = load_config(argparse.Namespace(**{**vars(args), "config": None}))
     if args.config:
-        return load_config(args, args.ankle)
-    config = checked(calibrate([walk], args.height, args.mass))
-    if args.ankle:
-        config.ankle = ANKLES[args.ankle]
-    return config
+        given = load_config(args, args.ankle)
+        return {"default": lambda _: default, "calibrated": lambda _: given}
+    configurations: dict[str, Callable[[int], Any]] = {
+        "default": lambda _: default,
+        "calibrated": lambda index: calibrated([walks[index]]),
+    }
+    if args.leave_out:
+        configurations["left out"] = lambda index: calibrated(walks[:index] + walks[index + 1 :])
+    return configurations
 
 
-def _row(recording: "Recording", speed_m_s: float, name: str, found: "Deviation") -> list["Cell"]:
-    numbers = [getattr(found, column) for column in RMS_COLUMNS]
-    return [recording.source, speed_m_s, found.steps, name, *numbers, int(found.limited)]
+def _rows(one: "Followed") -> "list[list[Cell]]":
+    return [
+        [
+            one.source,
+            one.speed_m_s,
+            one.steps,
+            name,
+            *(getattr(found, column) for column in RMS_COLUMNS),
+            int(found.limited),
+        ]
+        for name, found in one.deviations.items()
+    ]
 
 
-def _table(rows: list[list[Any]]) -> Any:
+def _print(followed: "list[Followed]", stream: Any) -> None:
+    from rich.console import Console
+
+    console = Console(file=stream)
+    for table in (_table(followed), _goal_table(followed)):
+        if not console.is_terminal:  # names need not fold in a file or a pipe
+            options = console.options.update(max_width=WIDEST)
+            console.width = table.__rich_measure__(console, options).maximum
+        console.print(table)
+
+
+def _table(followed: "list[Followed]") -> Any:
     from rich.box import SIMPLE
     from rich.markup import escape
     from rich.table import Table
 
+    from saddlewalk.gait.followed import QUANTITIES
+
+    names = list(followed[0].deviations)
     table = Table(
-        box=SIMPLE,
-        padding=0,
-        title="RMS of recorded minus planned: paper's defaults → calibrated",
+        box=SIMPLE, padding=0, title=f"RMS of recorded minus planned: {' → '.join(names)}"
     )
     table.add_column("recording", overflow="fold")
-    for name in ("speed", "steps", *SHOWN):
+    for name in ("speed", "steps", *(name.replace("_", "\n") for name in QUANTITIES)):
         table.add_column(name, justify="right", no_wrap=True)
-    first = COLUMNS.index(RMS_COLUMNS[0])
-    for default, calibrated in zip(rows[::2], rows[1::2], strict=True):
-        pairs = zip(default[first:-1], calibrated[first:-1], strict=True)
+    for one in followed:
+        numbers = [one.numbers(name) for name in names]
         table.add_row(
-            escape(default[0]),
-            f"{default[1]:.2f}",
-            str(default[2]),
-            *(f"{_thousandths(before)}→{_thousandths(after)}" for before, after in pairs),
+            escape(one.source),
+            f"{one.speed_m_s:.2f}",
+            str(one.steps),
+            *("→".join(_whole(row[quantity]) for row in numbers) for quantity in QUANTITIES),
         )
-    limited = ", ".join(f"{row[0]} ({row[3]})" for row in rows if row[-1])
+    limited = ", ".join(
+        f"{one.source} ({name})"
+        for one in followed
+        for name, found in one.deviations.items()
+        if found.limited
+    )
     if limited:
         table.caption = escape(f"Plan slower than the walk, which it can't reach: {limited}")
     return table
 
 
-def _thousandths(value: float) -> str:
-    return "-" if math.isnan(value) else f"{1e3 * value:.0f}"
+def _goal_table(followed: "list[Followed]") -> Any:
+    from rich.box import SIMPLE
+    from rich.table import Table
+
+    from saddlewalk.gait.followed import GOALS, medians, within
+
+    names = list(followed[0].deviations)
+    table = Table(box=SIMPLE, padding=0, title="Median, and recordings within the goal")
+    table.add_column("")
+    for name in ("goal", *names):
+        table.add_column(name, justify="right", no_wrap=True)
+    by_name = [(medians(followed, name), within(followed, name)) for name in names]
+    for quantity, goal in GOALS.items():
+        what, unit = quantity.split("_")
+        cells = [
+            f"{median[quantity]:.1f}, {100 * share[quantity]:.0f} %" for median, share in by_name
+        ]
+        table.add_row(what, f"{goal:g} {unit}", *cells)
+    return table
+
+
+def _whole(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.0f}"

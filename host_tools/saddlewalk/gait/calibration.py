@@ -5,14 +5,18 @@ offsets fitted. Every recording counts at its own mean speed, with a weight of i
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from saddlewalk.config import DEFAULT_HEIGHT_M, DEFAULT_MASS_KG, configuration
 from saddlewalk.errors import UserError
+from saddlewalk.gait import shape
+from saddlewalk.gait.fit import Fit, fields_of
+from saddlewalk.gait.in_sample import no_worse
 from saddlewalk.gait.measures import WalkMeasures
+from saddlewalk.gait.planned_time import TimedStep, timed_steps
 
 SPEED_SPREAD_M_S = 0.2  # speeds that differ by less are one speed
 FEWEST_STEPS = 2
@@ -20,17 +24,6 @@ FEWEST_STEPS_OF_A_FOOT = 3
 ONE_SPEED = "one speed: the offset, with the paper's slope"
 NARROWEST_M = 0.02  # the core treats narrower steps as this wide
 PENDULUM_RATIO = (0.45, 0.65)  # of a human's CoM height to the body height
-
-
-@dataclass(frozen=True)
-class Fit:
-    """One quantity: its fields, or why there are none."""
-
-    quantity: str
-    fields: dict[str, float] = field(default_factory=dict)
-    steps: int = 0
-    r2: float = np.nan  # of a regression over several speeds
-    note: str = ""
 
 
 @dataclass(frozen=True)
@@ -71,17 +64,33 @@ def calibrate(
         _body(walks, height_m, mass_kg),
         _step_length(walks, paper),
         _step_width(walks, paper),
-        _vertical(walks, paper),
         _half_foot(walks),
     ]
-    fits.append(_lateral(walks, configuration(fields_of(fits))))
     fits.append(_asymmetry(walks, configuration(fields_of(fits))))
-    fits.append(_ripple(walks, ripples))
-    return fits
+    fits.append(_vertical(walks, paper, configuration(fields_of(fits))))
+    given = {"body_height_m": height_m, "body_mass_kg": mass_kg}
+    default = configuration({name: value for name, value in given.items() if value is not None})
+    checked(fits)
+    return [
+        *fits,
+        *no_worse(fits, _shapes(walks, fits), walks, default),
+        _ripple(walks, ripples),
+    ]
 
 
-def fields_of(fits: Sequence[Fit]) -> dict[str, float]:
-    return {name: value for fit in fits for name, value in fit.fields.items()}
+def _shapes(walks: Sequence[WalkMeasures], fits: Sequence[Fit]) -> dict[str, list[Fit]]:
+    """Candidates by the column of Deviation that they are for."""
+
+    def steps(fits: Sequence[Fit]) -> list[TimedStep]:
+        config = configuration(fields_of(fits))
+        return [step for walk in walks for step in timed_steps(walk, config)]
+
+    sway = shape.sway(steps(fits))
+    return {
+        "com_y_m": sway,
+        "com_z_m": shape.height(steps([*fits, sway[0]])),
+        "heel_strike_s": shape.strike(steps(fits)),
+    }
 
 
 def checked(fits: Sequence[Fit]) -> Any:
@@ -130,7 +139,7 @@ def _step_length(walks: Sequence[WalkMeasures], paper: Any) -> Fit:
     samples = _samples(walks, [walk.length_m / 2 for walk in walks])
     if len(samples.value) < FEWEST_STEPS:
         return _too_few(walks, "step length", samples)
-    line = _fit_line(samples, paper.half_step_slope_s, lowest=0.01)
+    line = _fit_line(samples, paper.half_step_slope_s, lowest=0.01, flattest=0.001)
     fields = {"half_step_slope_s": line.slope, "half_step_intercept_m": line.intercept}
     return _regression("step length", fields, samples, line)
 
@@ -182,10 +191,18 @@ def _offset_width(samples: _Samples, paper: Any) -> dict[str, float]:
     )
 
 
-def _vertical(walks: Sequence[WalkMeasures], paper: Any) -> Fit:
-    samples = _samples(walks, [walk.vertical_m for walk in walks])
-    if len(samples.value) < FEWEST_STEPS:
-        return _too_few(walks, "vertical amplitude", samples)
+def _vertical(walks: Sequence[WalkMeasures], paper: Any, config: Any) -> Fit:
+    """The wave that the plan has; peak to peak of the recording where that is all there is."""
+    by_walk = [list(timed_steps(walk, config)) for walk in walks]
+    delay_rad = shape.vertical_delay_rad([step for steps in by_walk for step in steps])
+    waves_m = [shape.wave_heights_m(steps, delay_rad) for steps in by_walk]
+    heights_m = [
+        wave_m if len(wave_m) else walk.vertical_m
+        for walk, wave_m in zip(walks, waves_m, strict=True)
+    ]
+    samples = _samples(walks, heights_m)
+    if not len(samples.value):
+        return Fit("vertical amplitude", note=_why(walks, "vertical amplitude"))
     line = _fit_line(samples, paper.vertical_slope_s, lowest=0.0)
     fields = {"vertical_slope_s": line.slope, "vertical_intercept_m": line.intercept}
     return _regression("vertical amplitude", fields, samples, line)
@@ -197,24 +214,6 @@ def _half_foot(walks: Sequence[WalkMeasures]) -> Fit:
         return Fit("half the foot", note=_why(walks, "half the foot"))
     note = "heel to metatarsus, halved"
     return Fit("half the foot", {"cop_range_m": float(half_m.mean())}, len(half_m), note=note)
-
-
-def _lateral(walks: Sequence[WalkMeasures], config: Any) -> Fit:
-    """The factor from the paper's amplitude, at the fitted width, to the recorded one, [E7]."""
-    from saddlewalk.core import library, model_of
-
-    samples = _samples(walks, [walk.lateral_m for walk in walks])
-    if len(samples.value) < FEWEST_STEPS:
-        return _too_few(walks, "lateral amplitude", samples)
-    model = model_of(config)
-    width_m = np.array([library().saddle_step_width_m(model, v) for v in samples.speed_m_s])
-    printed_m = width_m / (2 * np.pi * samples.speed_m_s)
-    tangent_m = width_m / np.pi
-    wanted_m = np.minimum(samples.value, tangent_m)
-    factor = float(printed_m @ wanted_m / (printed_m @ printed_m))
-    beyond = int((samples.value > tangent_m).sum())
-    note = f"{beyond} beyond tangency, d/pi, which bounds the plan" if beyond else ""
-    return Fit("lateral amplitude", {"lateral_factor": factor}, len(samples.value), note=note)
 
 
 def _asymmetry(walks: Sequence[WalkMeasures], config: Any) -> Fit:
@@ -255,15 +254,19 @@ def _samples(walks: Sequence[WalkMeasures], values: Sequence[np.ndarray]) -> _Sa
     return _Samples(np.concatenate(speeds), np.concatenate(values))
 
 
-def _fit_line(samples: _Samples, paper_slope: float, lowest: float) -> _Line:
-    """Least squares with an intercept of at least `lowest`; at one speed with the paper's slope."""
+def _fit_line(
+    samples: _Samples, paper_slope: float, lowest: float, flattest: float = -np.inf
+) -> _Line:
+    """Least squares with a slope and an intercept of at least these; at one speed, and where the
+    slope would be less, with the paper's slope."""
     speed_m_s, value = samples.speed_m_s, samples.value
+    slope, note = paper_slope, ONE_SPEED
     if samples.several_speeds:
-        slope, intercept = (float(number) for number in np.polyfit(speed_m_s, value, 1))
-        note = ""
-    else:
-        slope, intercept = paper_slope, float(np.mean(value - paper_slope * speed_m_s))
-        note = ONE_SPEED
+        slope, note = float(np.polyfit(speed_m_s, value, 1)[0]), ""
+        if slope < flattest:
+            note = f"the slope would be {slope:.3g} s: the paper's"
+            slope = paper_slope
+    intercept = float(np.mean(value - slope * speed_m_s))
     if intercept < lowest:
         note = f"the intercept would be {intercept:.3g} m: {lowest:g} m, and the slope to it"
         intercept = lowest

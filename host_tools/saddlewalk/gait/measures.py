@@ -17,6 +17,7 @@ from saddlewalk.gait.events import (
 )
 from saddlewalk.gait.recording import Recording
 from saddlewalk.gait.steadiness import unsteady
+from saddlewalk.gait.step_curves import LONGEST_STEP_S, StepCurve, step_curves
 
 # Means of a walking person, from a child of two to the tallest adult.
 HUMAN = {
@@ -28,7 +29,6 @@ HUMAN = {
     "CoM height": (0.35, 1.4, "m"),
     "half the foot": (0.03, 0.15, "m"),
 }
-LONGEST_STEP_S = 3.0  # between heel strikes further apart one was missed
 ONE_POINT_M = 0.01
 HEEL_HEIGHT_M = (-0.03, 0.15)  # of a heel marker while the foot lies flat
 
@@ -47,6 +47,7 @@ class WalkMeasures:
     com_top_m: np.ndarray  # greatest height
     half_foot_m: np.ndarray  # one a placement: heel to middle of the metatarsus, halved
     missing: dict[str, str]  # quantity -> why it could not be measured
+    curves: list[StepCurve]  # steps from passing one foot to passing the next
 
 
 def measure(recording: Recording) -> WalkMeasures:
@@ -71,6 +72,7 @@ def measure(recording: Recording) -> WalkMeasures:
         com_top_m=np.array([z_m.max() for z_m in high_m] if grounded else []),
         half_foot_m=_half_foot_m(recording, placed),
         missing=_missing(recording, bool(pairs), bool(high_m), grounded) | no_sway,
+        curves=step_curves(recording, events),
     )
     _reject_implausible(measures, unsteady(recording, events, placed))
     return measures

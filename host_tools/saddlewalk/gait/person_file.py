@@ -6,15 +6,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from saddlewalk import __version__
-from saddlewalk.config import DEFAULT_HEIGHT_M, DEFAULT_MASS_KG
-from saddlewalk.gait.calibration import Fit, fields_of
+from saddlewalk.config import ANKLES, DEFAULT_HEIGHT_M, DEFAULT_MASS_KG
+from saddlewalk.gait.fit import Fit, fields_of
 
 
 def toml_text(fits: Sequence[Fit], sources: Sequence[str]) -> str:
     lines = [f"# {line}" for line in _origin(sources)]
     for fit in fits:
         lines += ["", f"# {_how_known(fit)}"]
-        lines += [f"{name} = {_number(value)}" for name, value in fit.fields.items()]
+        lines += [f"{name} = {_toml_value(name, value)}" for name, value in fit.fields.items()]
     return "\n".join([*lines, ""])
 
 
@@ -33,7 +33,7 @@ def header_text(fits: Sequence[Fit], sources: Sequence[str], path: str) -> str:
             f"static inline saddle_config_t saddle_config_{stem}(void)",
             "{",
             f"    saddle_config_t config = saddle_config_default({body});",
-            *(f"    config.{name} = {_number(value)}f;" for name, value in fields_of(fits).items()),
+            *(f"    config.{name} = {_c_value(name, v)};" for name, v in fields_of(fits).items()),
             "    return config;",
             "}",
             "",
@@ -56,6 +56,18 @@ def _how_known(fit: Fit) -> str:
         fit.note,
     ]
     return f"{fit.quantity}: {', '.join(text for text in known if text)}"
+
+
+def _toml_value(name: str, value: float) -> str:
+    return f'"{_ankle(value)}"' if name == "ankle" else _number(value)
+
+
+def _c_value(name: str, value: float) -> str:
+    return f"SADDLE_ANKLE_{_ankle(value).upper()}" if name == "ankle" else f"{_number(value)}f"
+
+
+def _ankle(number: float) -> str:
+    return next(name for name, value in ANKLES.items() if value == number)
 
 
 def _number(value: float) -> str:

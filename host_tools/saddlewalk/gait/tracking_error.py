@@ -6,17 +6,14 @@ and the line midway between the feet, and compared until the CoM passes the next
 """
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from saddlewalk.core import Core, library
-from saddlewalk.gait.events import FootEvents, foot_events, mean_speed, passing, placements
-from saddlewalk.gait.measures import LONGEST_STEP_S
-from saddlewalk.gait.recording import Recording
+from saddlewalk.gait.measures import WalkMeasures
+from saddlewalk.gait.step_curves import LONGEST_STEP_S, StepCurve
 from saddlewalk.planning.steady import walk
 
 PLAN_STEP_S = 0.005
@@ -37,16 +34,12 @@ class Deviation:
 
 
 @dataclass(frozen=True)
-class _Step:
-    """The recorded walk between passing one foot and the next."""
+class PlannedStep:
+    """The plan at a step's samples, in the step's frame."""
 
-    side: int  # that is passed first
-    elapsed_s: np.ndarray  # (n,)
-    com_y_m: np.ndarray  # from the line midway between the feet
-    com_z_m: np.ndarray
-    foot_x_m: np.ndarray  # (2, n) from the foot that is passed
-    landing_m: float  # the next foot from the one that is passed
-    heel_strike_s: float  # NaN: not seen
+    com_m: np.ndarray  # (3, n)
+    foot_m: np.ndarray  # (2, n, 3)
+    swing: np.ndarray  # (n,) the foot that swings
 
 
 class SteadyPlan:
@@ -63,7 +56,7 @@ class SteadyPlan:
             points.append(_point(time_s, output.plan))
         columns = np.array(points).T
         self._time_s, theta_rad, self._strike_s, self._support = columns[:4]
-        self._com_m, self._foot_x_m = columns[4:7], columns[7:9]
+        self._com_m, self._foot_m = columns[4:7], columns[7:13].reshape(2, 3, -1)
         self._via_s = np.interp([0, math.pi, 2 * math.pi], theta_rad, self._time_s)
 
     def heel_strike_s(self, side: int) -> float:
@@ -71,70 +64,61 @@ class SteadyPlan:
         index = np.searchsorted(self._time_s, self._via_s[side])
         return float(self._strike_s[index] - self._via_s[side])
 
-    def differences(self, step: _Step) -> dict[str, np.ndarray]:
-        """Recorded minus planned at the step's samples."""
+    def landing_m(self, side: int) -> float:
+        """Where the other foot lies then, from the foot `side`."""
+        landed_m = self._at(self._via_s[side + 1], self._foot_m[1 - side, 0])
+        return float(landed_m - self._at(self._via_s[side], self._com_m[0]))
+
+    def at(self, step: StepCurve) -> PlannedStep:
         at_s = self._via_s[step.side] + step.elapsed_s
-        com_m = [np.interp(at_s, self._time_s, curve) for curve in self._com_m]
-        stance_x_m = np.interp(self._via_s[step.side], self._time_s, self._com_m[0])
-        foot_x_m = [np.interp(at_s, self._time_s, curve) - stance_x_m for curve in self._foot_x_m]
-        landed_s = self._via_s[step.side + 1]
-        landing_m = np.interp(landed_s, self._time_s, self._foot_x_m[1 - step.side]) - stance_x_m
+        origin_m = np.array([self._at(self._via_s[step.side], self._com_m[0]), 0.0, 0.0])
         index = np.searchsorted(self._time_s, at_s, side="right") - 1
-        right_swings = self._support[index] == 0
-        return {
-            "com_y_m": step.com_y_m - com_m[1],
-            "com_z_m": step.com_z_m - com_m[2],
-            "swing_x_m": np.where(right_swings, *(step.foot_x_m - foot_x_m)[::-1]),
-            "landing_m": np.array([step.landing_m - landing_m]),
-            "heel_strike_s": np.array([step.heel_strike_s - self.heel_strike_s(step.side)]),
-        }
+        return PlannedStep(
+            com_m=np.array([self._at(at_s, curve) for curve in self._com_m]) - origin_m[:, None],
+            foot_m=np.array(
+                [[self._at(at_s, curve) for curve in foot_m] for foot_m in self._foot_m]
+            ).transpose(0, 2, 1)
+            - origin_m,
+            swing=np.where(self._support[index] == 0, 1, 0),
+        )
+
+    def _at(self, time_s: Any, curve: np.ndarray) -> Any:
+        return np.interp(time_s, self._time_s, curve)
 
 
-def deviation(recording: Recording, config: Any, hs_angle_deg: float) -> Deviation:
-    """`config` has passed saddle_config_check(); the recording's mean speed is known."""
-    events = (foot_events(recording, 0), foot_events(recording, 1))
-    plan = SteadyPlan(config, mean_speed(recording, events), hs_angle_deg)
-    steps = list(_steps(recording, events))
-    by_step = [plan.differences(step) for step in steps]
+def deviation(measured: WalkMeasures, config: Any, hs_angle_deg: float) -> Deviation:
+    """`config` has passed saddle_config_check()."""
+    plan = SteadyPlan(config, measured.speed_m_s, hs_angle_deg)
+    by_step = [_differences(plan, step) for step in measured.curves]
     pooled = {
         name: np.concatenate([differences[name] for differences in by_step] or [np.array([])])
         for name in ("com_y_m", "com_z_m", "swing_x_m", "landing_m", "heel_strike_s")
     }
     return Deviation(
-        steps=len(steps),
+        steps=len(measured.curves),
         com_z_shape_m=_rms(pooled["com_z_m"] - _mean(pooled["com_z_m"])),
         limited=plan.limited,
         **{name: _rms(values) for name, values in pooled.items()},
     )
 
 
-def _steps(recording: Recording, events: tuple[FootEvents, FootEvents]) -> Iterator[_Step]:
-    placed = placements(recording)
-    for i, (stance, to) in enumerate(pairwise(placed)):
-        passed, next_passed = passing(recording, stance), passing(recording, to)
-        if stance.side == to.side or passed is None or next_passed is None:
-            continue
-        (first, start_s), (end, end_s) = passed, next_passed
-        if not 0 < end_s - start_s <= LONGEST_STEP_S:
-            continue
-        span = slice(first, end)
-        before = placed[i - 1] if i and placed[i - 1].side == to.side else to
-        line_y_m = stance.cop_m[1] / 2 + (before.cop_m[1] + to.cop_m[1]) / 4
-        strikes = events[to.side].heel_strikes
-        struck = strikes[(strikes >= first) & (strikes < end)]
-        yield _Step(
-            side=stance.side,
-            elapsed_s=recording.time_s[span] - start_s,
-            com_y_m=recording.com_m[span, 1] - line_y_m,
-            com_z_m=recording.com_m[span, 2],
-            foot_x_m=recording.cop_m[:, span, 0] - stance.cop_m[0],
-            landing_m=to.cop_m[0] - stance.cop_m[0],
-            heel_strike_s=float(recording.time_s[struck[0]] - start_s) if len(struck) else np.nan,
-        )
+def _differences(plan: SteadyPlan, step: StepCurve) -> dict[str, np.ndarray]:
+    """Recorded minus planned at the step's samples."""
+    planned = plan.at(step)
+    samples = np.arange(len(step.elapsed_s))
+    swing_m = (step.foot_m - planned.foot_m)[planned.swing, samples, 0]
+    return {
+        "com_y_m": step.com_y_m - planned.com_m[1],
+        "com_z_m": step.com_z_m - planned.com_m[2],
+        "swing_x_m": swing_m,
+        "landing_m": np.array([step.landing_m - plan.landing_m(step.side)]),
+        "heel_strike_s": np.array([step.heel_strike_s - plan.heel_strike_s(step.side)]),
+    }
 
 
 def _point(time_s: float, plan: Any) -> tuple[float, ...]:
-    """Time, unwrapped phase, time of the next heel strike, support, CoM x y z, feet's x."""
+    """Time, unwrapped phase, time of the next heel strike, support, CoM x y z, left and right foot
+    likewise."""
     origin_m = plan.origin_x_nm * 1e-9
     com, (left, right) = plan.com_m, plan.foot_m
     return (
@@ -142,11 +126,11 @@ def _point(time_s: float, plan: Any) -> tuple[float, ...]:
         2 * math.pi * plan.stride_count + plan.theta_rad,
         time_s + plan.time_to_heel_strike_s,
         plan.support,
-        origin_m + com.x,
-        com.y,
-        com.z,
-        origin_m + left.x,
-        origin_m + right.x,
+        *(
+            value
+            for point in (com, left, right)
+            for value in (origin_m + point.x, point.y, point.z)
+        ),
     )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from saddlewalk.contract import FAULTS, SIDES, WALKING
 from saddlewalk.dashboard import SILENT_AFTER_S
-from saddlewalk.gait.measures import LONGEST_STEP_S
+from saddlewalk.gait.step_curves import LONGEST_STEP_S
 from saddlewalk.session.runs import Run
 
 SWING_MIN_S = 0.12  # as the firmware has it: contact that is lost for less ends no stance
