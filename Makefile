@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller coverage test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-targets cross-compiler samples physics bench-baselines format lint clean help
+.PHONY: build demo amalgamation controller coverage test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler samples physics bench-baselines format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -25,7 +25,7 @@ cross-compiler:
 
 test: build/build.ninja .venv/installed-test ## every test that this machine can run in minutes
 	$(call run_tests,build,release)
-	@echo "Left out, with targets of their own: test-exhaustive test-flood test-socketcan test-targets"
+	@echo "Left out, with targets of their own: test-exhaustive test-flood test-memory test-socketcan test-targets"
 
 test-exhaustive: build/build.ninja .venv/installed-test ## the core's functions over every float
 	@$(BIN)/ninja -C build --quiet tests
@@ -49,6 +49,9 @@ test-socketcan: build .venv/installed-test ## the tests on the kernel's own CAN,
 
 test-flood: build .venv/installed-test ## 5,000 frames a second for a minute
 	@$(BIN)/pytest -m flood --junit-xml build/reports/flood.xml
+
+test-memory: build .venv/installed-test ## ten minutes of the live page without growth of memory
+	@$(BIN)/pytest -m memory -s --junit-xml build/reports/memory.xml
 
 test-targets: build .venv/installed-test ## the core, the wire and their tests on controllers that QEMU emulates; docs/costs.md
 	@$(BIN)/ninja -C build --quiet count_calls

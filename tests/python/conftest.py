@@ -16,6 +16,8 @@ def pytest_runtest_setup(item):
         pytest.skip("SocketCAN on vcan0 and vcan1: make test-socketcan")
     if item.get_closest_marker("flood") and "flood" not in item.config.option.markexpr:
         pytest.skip("a flood of a minute: make test-flood")
+    if item.get_closest_marker("memory") and "memory" not in item.config.option.markexpr:
+        pytest.skip("ten minutes of a page: make test-memory")
     if item.get_closest_marker("targets") and "targets" not in item.config.option.markexpr:
         pytest.skip("a controller in QEMU: make test-targets")
 

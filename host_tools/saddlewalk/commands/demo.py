@@ -18,6 +18,7 @@ from saddlewalk.commands.emulate import (
     summary,
     wearer_of,
 )
+from saddlewalk.commands.view import add_view_options
 from saddlewalk.config import host_arguments, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.logs.run_files import CAN_LOG, LCM_LOG, PICTURE, TABLE, run_names
@@ -31,7 +32,10 @@ if TYPE_CHECKING:
     from saddlewalk.emulation.wearer import Wearer
     from saddlewalk.logs.recorder import Recorder
     from saddlewalk.logs.soundness import Check
+    from saddlewalk.view.beside import PageBeside
 
+VIEWED_S = 600.0
+VIEWED_SPEEDS = [(0.0, 0.0), (1.0, 0.8), (6.0, 1.2)]
 SPEEDS = [(0.0, 0.0), (1.0, 0.8), (6.0, 1.2), (16.0, 0.0)]
 DURATION_S = 22.0
 PUSH_TIME_S = 12
@@ -80,23 +84,39 @@ def add_parser(subparsers: Any) -> None:
         help="authenticate the commands with the key in FILE, or with a new key: "
         "docs/authentication.md",
     )
-    parser.set_defaults(run=run, clock=None)
+    add_view_options(
+        parser,
+        f"show the walk in the browser, with controls; it goes on for {VIEWED_S:g} s unless "
+        "--duration is given",
+    )
+    parser.set_defaults(run=run, clock=None, duration=None)
 
 
 def run(args: argparse.Namespace) -> int:
     from saddlewalk.emulation.plants import chosen_plant
 
     plant = chosen_plant(args)
+    if args.duration is None:
+        args.duration = VIEWED_S if args.view else DURATION_S
     config = load_config(args, body=plant.fields)
     if args.push is None and args.duration > PUSH_TIME_S:
         args.push = [(PUSH_N_S_KG * config.body_mass_kg, PUSH_TIME_S, PUSH_DIRECTION_DEG)]
     args.clock = _clock(args)
     lcm = _open_lcm(args.lcm)
-    with _key_file(args.command_key) as args.command_key:
-        return _walk(args, plant, config, lcm)
+    with _key_file(args.command_key) as args.command_key, _page(args) as page:
+        status = _walk(args, plant, config, lcm, page)
+        if page:
+            page.show_until_interrupted()
+    return status
 
 
-def _walk(args: argparse.Namespace, plant: "PlantChoice", config: Any, lcm: Any) -> int:
+def _walk(
+    args: argparse.Namespace,
+    plant: "PlantChoice",
+    config: Any,
+    lcm: Any,
+    page: "PageBeside | None",
+) -> int:
     from saddlewalk.atomic_write import RunFolder
     from saddlewalk.emulation.exoskeleton import Exoskeleton
     from saddlewalk.emulation.wearer import Noise
@@ -105,11 +125,13 @@ def _walk(args: argparse.Namespace, plant: "PlantChoice", config: Any, lcm: Any)
     from saddlewalk.planning.schedule import schedule_of
     from saddlewalk.transport.authentication import read_key
     from saddlewalk.transport.bus import describe
+    from saddlewalk.view.steering import Steering
 
     key = read_key(args.command_key) if args.command_key else None
     by_can = args.firmware == EMULATED
     wearer = wearer_of(args, plant, config, Noise())
-    schedule = schedule_of(speeds_of(args, SPEEDS), math.radians(args.hs_angle))
+    speeds = speeds_of(args, VIEWED_SPEEDS if args.view else SPEEDS)
+    schedule = schedule_of(speeds, math.radians(args.hs_angle))
     firmware = _host if args.firmware == HOST else _controller
     with RunFolder("--out", args.out, run_names()) as run_folder:
         walking = firmware(args, config, lcm, run_folder)
@@ -117,19 +139,30 @@ def _walk(args: argparse.Namespace, plant: "PlantChoice", config: Any, lcm: Any)
             authenticated = "; commands: authenticated, by CAN" if key else ""
             print(f"CAN: {describe(bus)}; clock: {args.clock}{authenticated}", flush=True)
             observers = [recorder, events_printer(wearer), display]
+            if page:
+                schedule = Steering(schedule, wearer, page)
+                observers.append(schedule)
             exoskeleton = Exoskeleton(
                 *(bus, wearer, schedule, lcm, observers),
                 key=key,
                 joint_core=plant.joint_core(config),
             )
             exoskeleton.run(args.clock, args.duration)
-        stops = schedule(args.duration).speed_m_s == 0
+        stops = not page and schedule(args.duration).speed_m_s == 0
         checks = walk_checks(wearer, exoskeleton, stops)
         checks += [*transport_checks(exoskeleton, recorder), *log_checks(recorder, config, by_can)]
         picture = recorder.csv_path.with_name(PICTURE)
         fell_s = wearer.fell_at_s if wearer.fallen else None
         draw_walk(recorder.csv_path, picture, wearer.pushes, config, fell_s)
     return _finish(args.out, wearer, exoskeleton, recorder, checks)
+
+
+def _page(args: argparse.Namespace) -> "contextlib.AbstractContextManager[PageBeside | None]":
+    from saddlewalk.view.beside import page_beside
+
+    if not args.view:
+        return contextlib.nullcontext()
+    return page_beside(args, "an emulated wearer, live", controls=True)
 
 
 def _clock(args: argparse.Namespace) -> str:
@@ -140,6 +173,7 @@ def _clock(args: argparse.Namespace) -> str:
         ("clock", args.clock, "lockstep"),
         ("can", args.can, "auto"),
         ("command-key", args.command_key, None),
+        ("view", "" if args.view else None, None),
     )
     for option, value, default in given:
         if value not in (None, default):

@@ -2,14 +2,20 @@
 
 import argparse
 import sys
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
+from saddlewalk.commands.view import add_view_options
 from saddlewalk.config import add_body_options
+from saddlewalk.errors import UserError
 from saddlewalk.options import add_markers
 from saddlewalk.outputs import add_input, add_output
 
 if TYPE_CHECKING:
+    from saddlewalk.gait.events import Gait
     from saddlewalk.gait.recording import Recording
+    from saddlewalk.gait.states import State
+    from saddlewalk.ticks import Signals
 
 SAMPLE_NAMES = ("healthy", "stroke")
 
@@ -34,9 +40,11 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         "--clock",
         choices=("lockstep", "realtime"),
-        default="lockstep",
-        help="as fast as the firmware answers, or in real time, with LCM (default lockstep)",
+        help="as fast as the firmware answers, or in real time, with LCM (default lockstep, with "
+        "--view realtime)",
     )
+    parser.add_argument("--lcm", metavar="URL", help="in real time (default: udpm on this machine)")
+    add_view_options(parser, "show the walk in the browser, in real time")
     add_body_options(parser)
     add_output(parser, "--out", metavar="FILE", help="states and scores of every tick as CSV")
     parser.set_defaults(run=run)
@@ -53,11 +61,10 @@ def run(args: argparse.Namespace) -> int:
         play_realtime,
         states_at_ticks,
     )
-    from saddlewalk.gait.replayed import SCORE_COLUMNS, report, score_row
-    from saddlewalk.recorded_states import STATE_COLUMNS
-    from saddlewalk.table import write_table
     from saddlewalk.transport.bus import open_bus, private_udp
+    from saddlewalk.view.beside import page_beside
 
+    clock = _clock(args)
     recording = _load(args)
     gait = analyse(recording)
     for line in implausible(recording, gait):
@@ -65,13 +72,41 @@ def run(args: argparse.Namespace) -> int:
     states = {state["t_s"]: state for state in states_at_ticks(recording, gait.contact)}
     options = host_arguments(load_config(args))
     spec = args.can or private_udp()
-    lcm = ["--lcm=none"] if args.clock == "lockstep" else []
-    play = play_lockstep if args.clock == "lockstep" else play_realtime
-    with (
-        open_bus(spec) as bus,
-        running_host(f"--can={spec}", f"--clock={args.clock}", *lcm, *options),
-    ):
-        answers = list(play(bus, measurements(states.values())))
+    lcm = "none" if clock == "lockstep" else args.lcm
+    lcm_option = [f"--lcm={lcm}"] if lcm else []
+    play = play_lockstep if clock == "lockstep" else play_realtime
+    page = page_beside(args, recording.source, controls=False) if args.view else nullcontext()
+    with page as shown:
+        with (
+            open_bus(spec) as bus,
+            running_host(f"--can={spec}", f"--clock={clock}", *lcm_option, *options),
+        ):
+            answers = list(play(bus, measurements(states.values())))
+        _finish(args, recording, gait, states, answers)
+        if shown:
+            shown.show_until_interrupted()
+    return 0
+
+
+def _clock(args: argparse.Namespace) -> str:
+    """The chosen clock; a page shows real time."""
+    if args.view and args.clock == "lockstep":
+        raise UserError("--view shows a walk in real time: leave --clock lockstep out")
+    return args.clock or ("realtime" if args.view else "lockstep")
+
+
+def _finish(
+    args: argparse.Namespace,
+    recording: "Recording",
+    gait: "Gait",
+    states: "dict[float, State]",
+    answers: "list[tuple[float, Signals]]",
+) -> None:
+    """Write --out and print the report."""
+    from saddlewalk.gait.replayed import SCORE_COLUMNS, report, score_row
+    from saddlewalk.recorded_states import STATE_COLUMNS
+    from saddlewalk.table import write_table
+
     rows = [score_row(*answer) for answer in answers]
     if args.out:
         measured = STATE_COLUMNS[1:]
@@ -85,7 +120,6 @@ def run(args: argparse.Namespace) -> int:
         )
     stream = sys.stderr if args.out == "-" else sys.stdout
     print("\n".join(report(recording, gait, rows)), file=stream)
-    return 0
 
 
 def _load(args: argparse.Namespace) -> "Recording":

@@ -40,6 +40,8 @@ class Tick:
 class Observer:
     """Receives what happens; the base class ignores it."""
 
+    finished = False  # True: end the walk now
+
     def frame(self, frame: can.Message) -> None:
         """Every frame sent (is_rx False) and received (True)."""
 
@@ -137,7 +139,7 @@ class Exoskeleton:
 
     def _run_lockstep(self, duration_s: float) -> None:
         """As fast as the firmware answers: one set of measurements, one tick, 80 ms of physics."""
-        while self._wearer.time_s < duration_s - STEP_S / 2:
+        while self._goes_on(duration_s):
             self._take(self._exchange())
             self._advance(round(TICK_S / STEP_S))
             self._publish_truth()
@@ -155,7 +157,7 @@ class Exoskeleton:
         punctuality = self.punctuality = Punctuality()
         heard_s, commanded_s = time.monotonic(), -math.inf
         for wake_up in itertools.count():
-            if self._wearer.time_s >= duration_s - STEP_S / 2:
+            if not self._goes_on(duration_s):
                 break
             deadline_s = ticks.begin_s + wake_up * WAKE_UP_S
             taken = ticks.at(wake_up, deadline_s)
@@ -177,6 +179,10 @@ class Exoskeleton:
                 self._poll()
         self._begun = False
         self._command_in_real_time()
+
+    def _goes_on(self, duration_s: float) -> bool:
+        finished = any(observer.finished for observer in self._observers)
+        return not finished and self._wearer.time_s < duration_s - STEP_S / 2
 
     def _silent(self) -> UserError:
         silent = f"the firmware has been silent for {SILENCE_S:g} s on {self._bus.channel_info}"

@@ -21,13 +21,18 @@ _MULTICAST, _MASK = "224.0.0.0", "240.0.0.0"
 
 def possible() -> bool:
     """Whether this process may have a network of its own, and isn't in one already."""
-    if _INSIDE in os.environ:
+    if inside():
         return False
     try:
         trial = subprocess.run([*_NAMESPACE, "true"], capture_output=True, check=False)
     except OSError:
         return False
     return trial.returncode == 0
+
+
+def inside() -> bool:
+    """Whether this process is in such a network."""
+    return _INSIDE in os.environ
 
 
 def enter() -> None:
