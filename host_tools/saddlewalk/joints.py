@@ -50,3 +50,27 @@ def forward(body: Any, trunk: Any, joints: Any) -> Any:
     posture = ffi().new("saddle_whole_body_t *")
     library().saddle_forward(body, trunk, joints, posture)
     return posture
+
+
+class Estimator:
+    """One saddle_estimator_t: what the core measures a wearer by, from a device's sensors.
+
+    `sensors` is the saddle_sensors_t * that the caller fills before each `update()`.
+    """
+
+    def __init__(self, body: Any, settings: Any | None = None) -> None:
+        config = settings or ffi().new(
+            "saddle_estimator_config_t *", library().saddle_estimator_default()
+        )
+        bad = library().saddle_estimator_check(config)
+        if bad != ffi().NULL:
+            raise UserError(f"{ffi().string(bad).decode()} is out of its range")
+        self._state = ffi().new("saddle_estimator_t *")
+        self.sensors = ffi().new("saddle_sensors_t *")
+        library().saddle_estimator_init(self._state, body, config)
+
+    def update(self) -> Any:
+        """saddle_estimator_update(): the saddle_estimate_t * of the sensors as they are."""
+        estimate = ffi().new("saddle_estimate_t *")
+        library().saddle_estimator_update(self._state, self.sensors, estimate)
+        return estimate

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from saddlewalk import joints
+from saddlewalk import core, joints
 from saddlewalk.core import ffi
 from saddlewalk.errors import UserError
 
@@ -50,3 +50,33 @@ def test_what_was_measured_takes_the_place_of_the_default():
 def test_a_body_that_is_none_is_rejected_by_name(measured, message):
     with pytest.raises(UserError, match=message):
         joints.legs(1.79, 63.3, measured)
+
+
+def test_somebody_who_stands_is_measured_once_the_tilt_has_settled():
+    body = joints.legs(1.79, 63.3)
+    estimator = joints.Estimator(body)
+    sensors = estimator.sensors
+    sensors.accelerometer_m_s2.z = 9.80665
+    sensors.load_n[0], sensors.load_n[1] = 300.0, 320.0
+    ages = []
+    for k in range(100):
+        sensors.time_us = 10_000 * k
+        measured = estimator.update().measurement
+        ages.append(measured.com.age_us)
+    assert ages[30] == core.AGE_NEVER_US and ages[-1] == 0
+    upright = joints.forward(
+        body, ffi().new("saddle_trunk_t *", {"axes": UPRIGHT}), ffi().new("saddle_joints_t *")
+    )
+    height = upright.com.position_m.z - upright.foot[0].sole_m.z
+    assert measured.com.height_m == pytest.approx(height, abs=1e-4)
+    assert measured.com.velocity_m_s.x == pytest.approx(0, abs=1e-3)
+    assert [foot.contact for foot in measured.foot] == [True, True]
+    half = body.hip_half_width_m
+    assert [foot.cop_m.y for foot in measured.foot] == pytest.approx([half, -half], abs=1e-4)
+
+
+def test_a_setting_that_is_out_of_its_range_is_named():
+    settings = ffi().new("saddle_estimator_config_t *", core.library().saddle_estimator_default())
+    settings.slip_m_s = 9.0
+    with pytest.raises(UserError, match="slip_m_s is out of its range"):
+        joints.Estimator(joints.legs(1.79, 63.3), settings)

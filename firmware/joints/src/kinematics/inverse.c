@@ -1,5 +1,6 @@
 #include "kinematics/chain.h"
 #include "kinematics/legs.h"
+#include "math/bytes.h"
 #include "math/elementary.h"
 #include "space/arctangent.h"
 #include "space/axes.h"
@@ -39,20 +40,18 @@ typedef struct {
 } motion_t;
 
 /* [J2] */
-static wanted_foot_t wanted_foot(const saddle_legs_t *legs, const saddle_foot_t *foot)
+static void want_foot(const saddle_legs_t *legs, const saddle_foot_t *foot, wanted_foot_t *wanted)
 {
-    wanted_foot_t wanted;
     const saddle_axes_t heading = saddle_axes_about_z(&WORLD, saddle_sin_cos(foot->yaw_rad));
-    wanted.axes = saddle_axes_about_y(&heading, saddle_sin_cos(foot->pitch_rad));
-    wanted.turn_rad_s = saddle_vec3_along(saddle_vec3_scale(foot->yaw_rate_rad_s, WORLD.z),
-                                          foot->pitch_rate_rad_s, heading.y);
+    wanted->axes = saddle_axes_about_y(&heading, saddle_sin_cos(foot->pitch_rad));
+    wanted->turn_rad_s = saddle_vec3_along(saddle_vec3_scale(foot->yaw_rate_rad_s, WORLD.z),
+                                           foot->pitch_rate_rad_s, heading.y);
     const float forward_m = -legs->ankle_to_middle_m - saddle_sole_point_m(legs, foot->point);
     const saddle_vec3_t arm_m =
-        saddle_to_world(&wanted.axes, (saddle_vec3_t){forward_m, 0.0f, legs->ankle_height_m});
-    wanted.ankle.position_m = saddle_vec3_add(foot->position_m, arm_m);
-    wanted.ankle.velocity_m_s =
-        saddle_vec3_add(foot->velocity_m_s, saddle_vec3_cross(wanted.turn_rad_s, arm_m));
-    return wanted;
+        saddle_to_world(&wanted->axes, (saddle_vec3_t){forward_m, 0.0f, legs->ankle_height_m});
+    wanted->ankle.position_m = saddle_vec3_add(foot->position_m, arm_m);
+    wanted->ankle.velocity_m_s =
+        saddle_vec3_add(foot->velocity_m_s, saddle_vec3_cross(wanted->turn_rad_s, arm_m));
 }
 
 /* [J2] */
@@ -212,25 +211,18 @@ static bool usable_foot(const saddle_foot_t *foot)
            saddle_in_range(foot->pitch_rad, -SADDLE_TWO_PI, SADDLE_TWO_PI);
 }
 
-static void all_zero(saddle_joints_t *joints)
-{
-    for (unsigned joint = 0; joint < SADDLE_LEG_JOINTS; joint++) {
-        joints->angle_rad[SADDLE_LEFT][joint] = joints->angle_rad[SADDLE_RIGHT][joint] = 0.0f;
-        joints->rate_rad_s[SADDLE_LEFT][joint] = joints->rate_rad_s[SADDLE_RIGHT][joint] = 0.0f;
-    }
-}
-
 saddle_reach_t saddle_inverse(const saddle_legs_t *legs, const saddle_trunk_t *trunk,
                               const saddle_foot_t foot[2], saddle_joints_t *joints)
 {
     if (!usable_trunk(trunk) || !usable_foot(&foot[0]) || !usable_foot(&foot[1])) {
-        all_zero(joints);
+        saddle_clear(joints, sizeof *joints);
         return REFUSED;
     }
     saddle_reach_t reach = {true, {false, false}, 0u, 0u};
     for (unsigned side = 0; side < 2; side++) {
         motion_t motion[SADDLE_LEG_JOINTS];
-        const wanted_foot_t wanted = wanted_foot(legs, &foot[side]);
+        wanted_foot_t wanted;
+        want_foot(legs, &foot[side], &wanted);
         const saddle_com_t hip = saddle_hip(legs, trunk, (saddle_side_t)side);
         leg_line_t line = leg_line(&wanted, &hip);
         reach.out_of_reach[side] = !fit_line(legs, &line);
@@ -246,7 +238,7 @@ saddle_reach_t saddle_inverse_of_com(const saddle_legs_t *legs, const saddle_com
                                      saddle_joints_t *joints)
 {
     if (!usable_vec3(com->position_m) || !usable_vec3(com->velocity_m_s)) {
-        all_zero(joints);
+        saddle_clear(joints, sizeof *joints);
         return REFUSED;
     }
     for (unsigned i = 0; i < CORRECTIONS; i++) {

@@ -1,6 +1,6 @@
 #include "kinematics/legs.h"
 
-#include "math/elementary.h"
+#include "settings/fields.h"
 
 #define FIELD(name, min, max) {#name, offsetof(saddle_legs_t, name), min, max}
 /* These come last in LEGS_FIELDS: three of each joint, in the joints' order. */
@@ -71,12 +71,9 @@ const saddle_config_field_t *saddle_legs_field(size_t index)
 
 const char *saddle_legs_check(const saddle_legs_t *legs)
 {
-    for (size_t i = 0; i < LEGS_FIELD_COUNT; i++) {
-        const saddle_config_field_t *field = &LEGS_FIELDS[i];
-        const float value = *(const float *)(const void *)((const char *)legs + field->offset);
-        if (!saddle_in_range(value, field->min, field->max)) {
-            return field->name;
-        }
+    const char *bad_field = saddle_bad_field(LEGS_FIELDS, LEGS_FIELD_COUNT, legs);
+    if (bad_field != NULL) {
+        return bad_field;
     }
     if (legs->joint[SADDLE_KNEE].min_rad < KNEE_MIN_RAD) {
         return "knee_min_rad";

@@ -1,4 +1,5 @@
 #include "kinematics/chain.h"
+#include "math/bytes.h"
 
 #include <saddlewalk/joints.h>
 
@@ -8,7 +9,7 @@ void saddle_forward(const saddle_legs_t *legs, const saddle_trunk_t *trunk,
     saddle_chain_t chain[2];
     for (unsigned side = 0; side < 2; side++) {
         saddle_chain(legs, trunk, joints, (saddle_side_t)side, &chain[side]);
-        posture->foot[side] = chain[side].foot;
+        saddle_copy(&posture->foot[side], &chain[side].foot, sizeof posture->foot[side]);
     }
     posture->com = saddle_com_of(legs, trunk, chain);
 }
