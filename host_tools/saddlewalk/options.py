@@ -24,6 +24,11 @@ def number_in(low: float, high: float, unit: str = "") -> Callable[[str], float]
     return parse
 
 
+def list_of(kind: Callable[[str], float]) -> Callable[[str], tuple[float, ...]]:
+    """An argparse type: values of a kind, separated by commas."""
+    return lambda text: tuple(kind(part) for part in text.split(","))
+
+
 def whole_number_in(low: int, high: int) -> Callable[[str], int]:
     """An argparse type: a whole number in [low, high]."""
 

@@ -59,6 +59,12 @@ WRITERS = [
     Writer("calibrate {walk} {other}", "--header", "person.h"),
     Writer("bench --rounds 1", "--json", "bench.json"),
     Writer("evaluate --walks 1 --jobs 2 --gait {gait}", "--out", "found", ("evaluation.json",)),
+    Writer(
+        "endure --plant pendulum --speeds 1 --distance 1 --repeats 1 --jobs 1 --config {toml}",
+        "--out",
+        "found",
+        ("endurance.json",),
+    ),
     Writer("evaluate --falls {falls} --config {toml}", "--out", "found", ("scores.json",)),
     Writer("evaluate --falls {falls} --config {toml}", "--json", "scores.json"),
     Writer("reproduce --gait {gait}", "--out", "paper", ("paper.html", "steps.png")),

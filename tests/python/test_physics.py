@@ -1,6 +1,8 @@
 """A body in MuJoCo that walks by the plan: its statics, its balance, its walk, and the wire."""
 
+import csv
 import importlib.util
+import json
 
 import numpy as np
 import pytest
@@ -184,3 +186,42 @@ def test_without_mujoco_the_remedy_is_named(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     assert main(["demo", "--plant", "mujoco", "--out", str(tmp_path / "demo")]) == 2
     assert "--plant mujoco needs mujoco: run" in capsys.readouterr().err
+
+
+def test_endure_counts_falls_and_stands(tmp_path, capsys):
+    out = tmp_path / "out"
+    options = ["--plant", "pendulum", "--distance", "6", "--repeats", "2", "--jobs", "1"]
+    assert main(["endure", *options, "--speeds", "0.8,1.2", "--out", str(out)]) == 0
+    shown = capsys.readouterr().out
+    assert "4 walks" in shown and "0 falls, 4 stand at the end" in shown
+    walks = json.loads((out / "endurance.json").read_text())
+    assert [group["asked_m_s"] for group in walks["groups"]] == [0.8, 1.2]
+    for group in walks["groups"]:
+        assert group["walks"] == group["standing"] == 2
+        assert group["distance_m"] > 2 * 6
+        assert group["speed_m_s"] == pytest.approx(group["asked_m_s"], abs=0.1)
+    rows = list(csv.DictReader((out / "endurance.csv").open()))
+    assert len(rows) == 4 and all(row["stands"] == "True" for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--plant", "pendulum", "--torque-delays", "5"], "--torque-delays: only with --plant"),
+        (["--heights", "1.6", "--height", "1.7", "--plant", "pendulum"], "give one of them"),
+        (["--speeds", "1,fast"], "'fast' must be 0.001 to 10 m/s"),
+    ],
+)
+def test_what_endure_cannot_do_is_named(options, words, capsys):
+    try:
+        assert main(["endure", *options]) == 2
+    except SystemExit as ended:
+        assert ended.code == 2
+    assert words in capsys.readouterr().err
+
+
+@needs_mujoco
+def test_late_torques_make_a_body_fall(capsys):
+    options = ["--speeds", "0.8", "--distance", "2", "--repeats", "1", "--jobs", "1"]
+    assert main(["endure", *options, "--torque-delays", "60"]) == 1
+    assert "1 falls, 0 stand at the end" in capsys.readouterr().out

@@ -3,7 +3,6 @@
 import argparse
 import functools
 import itertools
-import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from saddlewalk.atomic_write import write_text
 from saddlewalk.config import add_body_options, given_fields, load_config
+from saddlewalk.json_text import json_text
 from saddlewalk.options import (
     add_campaign_options,
     add_plant_options,
@@ -134,7 +134,7 @@ def run(args: argparse.Namespace) -> int:
     found = leave_one_out({name: each for part in parts for name, each in part.scores.items()})
     if found:
         console.print(table(found))
-    text = _json(
+    text = json_text(
         {name: {**each, **_cross_validation(found.get(name))} for name, each in results.items()}
     )
     if args.json:
@@ -386,7 +386,7 @@ def _write_emulated(
 
     rows = [walk.row() for walk in walks]
     write_table(str(new / "walks.csv"), list(rows[0]), (list(row.values()) for row in rows))
-    (new / "evaluation.json").write_text(_json(result))
+    (new / "evaluation.json").write_text(json_text(result))
     draw_rocs(walks, new / "roc.png")
     draw_region(config, new / "region.png")
     yield from EMULATED_FILES
@@ -420,16 +420,3 @@ def _interleaved(lists: Sequence[Sequence[Any]]) -> Iterator[Any]:
     nothing = object()
     turns = itertools.chain.from_iterable(itertools.zip_longest(*lists, fillvalue=nothing))
     return (each for each in turns if each is not nothing)
-
-
-def _json(value: Any) -> str:
-    return json.dumps(_without_nan(value), indent=1) + "\n"
-
-
-def _without_nan(value: Any) -> Any:
-    """Unknown numbers are null: JSON has no NaN."""
-    if isinstance(value, dict):
-        return {key: _without_nan(part) for key, part in value.items()}
-    if isinstance(value, list):
-        return [_without_nan(part) for part in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
