@@ -53,6 +53,12 @@ def add_parser(subparsers: Any) -> None:
     add_output(
         parser, "--json", metavar="FILE", help="errors, medians and shares within the goals as JSON"
     )
+    add_output(
+        parser,
+        "--picture",
+        metavar="FILE",
+        help="a stride of the first recording and its plan over each other, as PNG, SVG or PDF",
+    )
     parser.set_defaults(run=run)
 
 
@@ -66,7 +72,14 @@ def run(args: argparse.Namespace) -> int:
     _check_leave_out(args)
     markers = read_markers(args.markers)
     walks = [measure(load_walk(source, markers)) for source in args.recordings]
-    followed = follow(walks, _configurations(args, walks), args.hs_angle)
+    configurations = _configurations(args, walks)
+    followed = follow(walks, configurations, args.hs_angle)
+    if args.picture:
+        from saddlewalk.pictures.film_strip import draw_film_strip
+
+        names = list(configurations)
+        shown = {name: configurations[name](0) for name in (names[0], names[-1])}
+        draw_film_strip(args.picture, walks[0], followed[0], shown, args.hs_angle)
     if args.out:
         write_table(args.out, COLUMNS, [row for one in followed for row in _rows(one)])
     if args.json:

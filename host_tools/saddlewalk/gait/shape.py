@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from saddlewalk.config import ANKLES
 from saddlewalk.gait.fit import Fit, r_squared
@@ -27,6 +28,7 @@ DELAY_STEPS = 2
 LARGEST_OFFSET_M = 0.1  # what the core accepts
 LARGEST_DELAY_RAD = 1.5
 FACTOR = (0.1, 5.0)
+SWING_BOUNDS = ((-1.0, 0.6, 0.3), (0.4, 2.0, 4.0))  # what the core accepts
 SHARE = (0.05, 0.5)  # later, the plan's foot has landed
 SAME_STEP_S = 0.02  # steps whose times differ by less show no line through the origin
 KEPT = "the population's {}"
@@ -168,6 +170,41 @@ def strike(steps: Sequence[TimedStep]) -> list[Fit]:
     r2 = r_squared(left_over_s, struck_s) if np.ptp(step_s) > SAME_STEP_S else np.nan
     fits = [Fit("heel strike", {"strike_share": share}, len(seen), r2, note)]
     return [*fits[share < SHARE[0] :], population, Fit("heel strike", note=_paper("time"))]
+
+
+def swing(steps: Sequence[TimedStep]) -> list[Fit]:
+    """When the foot begins and ends to move along x, and how late it does the most of it, [E39]."""
+    samples = [_swing_samples(step) for step in steps]
+    progress, x_m, length_m = np.concatenate([np.empty((3, 0)), *samples], axis=1)
+    population = _unknown("swing", SWING)
+    if not len(x_m):
+        return [population]
+
+    def left_over_m(coefficients: np.ndarray) -> np.ndarray:
+        return x_m - length_m * (2 * swing_profile(progress, *coefficients) - 1)
+
+    found = least_squares(left_over_m, list(SWING.values()), bounds=SWING_BOUNDS)
+    fields = dict(zip(SWING, map(float, found.x), strict=True))
+    r2 = r_squared(left_over_m(found.x), x_m)
+    return [Fit("swing", fields, len(steps), r2), population, Fit("swing", note=_paper("line"))]
+
+
+def swing_profile(progress: np.ndarray, begin: float, end: float, skew: float) -> np.ndarray:
+    s = np.clip((progress - begin) / (end - begin), 0, 1) ** skew
+    return np.asarray(s**3 * (10 + s * (6 * s - 15)))
+
+
+def _swing_samples(step: TimedStep) -> np.ndarray:
+    """(3, n): progress of the planned swing, x of the foot from the stance foot, the step's length.
+
+    Until the other foot lands it swings, from then on the one that was passed.
+    """
+    share = step.angle_rad / np.pi
+    ahead = share < 0.5
+    x_m = np.where(ahead, step.curve.foot_m[1 - step.curve.side, :, 0], 0.0)
+    x_m += np.where(ahead, 0.0, step.curve.foot_m[step.curve.side, :, 0] - step.length_m)
+    samples = np.stack([np.where(ahead, share + 0.5, share - 0.5), x_m, 0 * x_m + step.length_m])
+    return samples[:, np.isfinite(x_m) & (share < 1.5)]
 
 
 def _takes(offset_m: float, delay_rad: float) -> bool:
