@@ -549,6 +549,20 @@ def test_follow_leaves_each_recording_out_and_summarises(write, tmp_path, capsys
     assert found["within"]["calibrated"]["y_mm"] == 1
 
 
+def test_film_strip_is_drawn_of_a_stride(write, tmp_path):
+    picture = tmp_path / "strip.svg"
+    assert main(["follow", write(walk_of(PERSON, 1.0)), "--picture", str(picture)]) == 0
+    words = picture.read_text()
+    assert words.startswith("<?xml") and "svg" in words
+
+
+def test_film_strip_needs_a_step_that_was_seen(write, tmp_path, capsys):
+    walk = walk_of(PERSON, 1.0)
+    unseen = dataclasses.replace(walk, com_m=walk.com_m * np.array([1, 1, np.nan]))
+    arguments = ("follow", write(unseen), "--picture", str(tmp_path / "strip.png"))
+    assert "--picture: no step of walk.csv" in refusal(capsys, *arguments)
+
+
 def test_what_cannot_be_left_out_is_rejected(write, tmp_path, capsys):
     walk = write(walk_of(PERSON, 1.0))
     assert "two recordings" in refusal(capsys, "follow", walk, "--leave-out")

@@ -55,6 +55,7 @@ WRITERS = [
     Writer("replay {walk}", "--out", "scores.csv"),
     Writer("follow {walk} {other} --config {toml}", "--out", "follow.csv"),
     Writer("follow {walk} {other} --config {toml}", "--json", "follow.json"),
+    Writer("follow {walk} {other} --config {toml}", "--picture", "follow.png"),
     Writer("calibrate {walk} {other}", "--out", "person.toml"),
     Writer("calibrate {walk} {other}", "--header", "person.h"),
     Writer("bench --rounds 1", "--json", "bench.json"),

@@ -13,7 +13,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from saddlewalk.cli import main
-from saddlewalk.contract import LEVELS, TICK_S
+from saddlewalk.contract import LEVELS, SIDES, TICK_S
 from saddlewalk.logs.messages import decode
 from saddlewalk.session import page as session_page
 from saddlewalk.session import pictures
@@ -26,6 +26,7 @@ TICKS = 163  # of the walk of 13 s
 AGES = ("age of", "median (ms)", "95 % below (ms)", "oldest (ms)", "ticks before it came")
 TROUBLES = ("fault or limit", "meaning", "times", "in all (s)", "first at (s)", "last at (s)")
 ALARMS = ("start (s)", "duration (s)", "level", "lowest margin", "driven by", "reason")
+GAIT = ("what", "unit", "measured", "default, not calibrated", "published", "what it means")
 VARIABILITY = ("steps", "foot", "what", "number", "mean", "SD", "CV")
 
 
@@ -185,6 +186,42 @@ def test_steps_are_those_of_the_wearers_feet(walk, page):
     steady = rows["steady", "both", "step time (s)"]
     assert 3 <= int(steady[0]) < sum(map(len, landed.values()))
     assert float(steady[1]) == pytest.approx(2 * (0.1802 * 1.2 + 0.1351) / 1.2, abs=0.04)
+
+
+def test_gait_is_that_of_the_steady_steps_beside_the_configuration_and_norms(walk, page):
+    rows = {row[0]: row[1:] for row in page.tables[GAIT]}
+    steady = {tuple(row[:3]): row[3:] for row in page.tables[VARIABILITY] if row[0] == "steady"}
+    for what, label in (("step length", "step length (m)"), ("step width", "step width (m)")):
+        assert float(rows[what][1]) == pytest.approx(
+            float(steady["steady", "both", label][1]), abs=6e-4
+        )
+    time_s = float(steady["steady", "both", "step time (s)"][1])
+    assert float(rows["cadence"][1]) == pytest.approx(60 / time_s, rel=2e-3)
+    left, right = (float(steady["steady", side, "step length (m)"][1]) for side in SIDES)
+    index = 200 * (left - right) / (left + right)
+    assert float(rows["symmetry index, step length"][1]) == pytest.approx(index, abs=0.3)
+    speed = float(re.search(r"steps at (\S+) m/s", page.text)[1])
+    assert float(rows["step length"][2]) == pytest.approx(2 * (0.1802 * speed + 0.1351), abs=4e-3)
+    assert rows["cadence"][3] == "107 ± 10"  # 0.56 ± 0.05 s a step
+    assert rows["step length"][3] == "0.81 ± 0.09"  # of a leg of 0.53 of 1.79 m
+    truth = messages(events_of(walk), "TRUTH")
+    both = [one.left_contact and one.right_contact for one in truth[40:-40]]
+    assert float(rows["double support"][1]) == pytest.approx(100 * np.mean(both), abs=6)
+
+
+def test_gait_without_steps_or_with_an_absurd_configuration_is_reported(walk, tmp_path, unseen):
+    def spoil(_, config):
+        config.value = [math.nan, *config.value[1:]]
+        config.name = [*config.name[:-1], "nose"]
+
+    events = changed(events_of(walk), "CONFIG", spoil)
+    page = report(write_events(tmp_path / "spoilt.lcmlog", events), tmp_path / "spoilt.html")
+    assert GAIT in page.tables
+    page = report(
+        write_events(tmp_path / "none.lcmlog", without(events_of(walk), "INPUT", "PLAN")),
+        tmp_path / "none.html",
+    )
+    assert GAIT not in page.tables
 
 
 def test_variability_is_the_samples():

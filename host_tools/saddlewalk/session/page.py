@@ -12,7 +12,7 @@ from saddlewalk.config import ANKLES
 from saddlewalk.contract import LEVELS, SIDES
 from saddlewalk.html_page import table
 from saddlewalk.printable import printable
-from saddlewalk.session import quality
+from saddlewalk.session import gait, quality
 from saddlewalk.session.pictures import draw
 from saddlewalk.session.runs import NO_NUMBER, Run, Session, Spans
 from saddlewalk.session.steps import QUANTITIES, Steps, Way, variability, walked
@@ -66,6 +66,7 @@ def write_page(log: Path, session: Session) -> str:
             f"## Scores\n\n{shown['scores']}",
             *(words for kind, words in shown.items() if kind.startswith("alarm")),
             f"## Steps\n\n{_steps(way)}\n\n{shown.get('steps', '')}",
+            f"## Gait\n\n{_gait(run, way)}",
             f"## Data quality\n\n{_quality(run, found)}\n\n{shown.get('troubles', '')}",
             f"## Configuration\n\n{_configuration(run)}",
         ]
@@ -242,6 +243,30 @@ def _variabilities(group: str, steps: Steps, chosen: np.ndarray) -> Iterator[lis
                 _known(100 * spread.cv, 1, " %"),
             )
             yield [group, side, label, str(spread.steps), *numbers]
+
+
+def _gait(run: Run, way: Way | None) -> str:
+    if way is None or not len(way.steps):
+        return NO_STEPS
+    steps = gait.described(way)
+    of = gait.configured(run, steps.speed_m_s)
+    configured = "calibration" if of and of.calibrated else "default, not calibrated"
+    cells = [
+        [
+            row.quantity,
+            row.unit,
+            _known(row.measured, 3),
+            "" if np.isnan(row.configured) else f"{row.configured:.3f}",
+            row.published,
+            row.meaning,
+        ]
+        for row in gait.rows(run, way)
+    ]
+    header = ("what", "unit", "measured" if way.measured else "planned", configured, "published")
+    speed = f"{len(steps)} steps at {_known(steps.speed_m_s, 2)} m/s in the mean"
+    which = "The steady ones" if steps.steady.any() else "No step was steady: all"
+    shown = table((*header, "what it means"), cells)
+    return f"{which}, {speed}.\n\n{shown}\n\n{gait.NORMS}"
 
 
 def _quality(run: Run, troubles: Sequence[quality.Trouble]) -> str:

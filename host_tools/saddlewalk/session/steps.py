@@ -1,5 +1,6 @@
 """Steps and the way of a run: as measured, or as planned where no measurement was logged."""
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -35,6 +36,16 @@ class Steps:
     def __len__(self) -> int:
         return len(self.landed_s)
 
+    def where(self, chosen: np.ndarray) -> "Steps":
+        return Steps(*(getattr(self, field.name)[chosen] for field in dataclasses.fields(self)))
+
+    @property
+    def speed_m_s(self) -> float:
+        """Mean over the steps whose time is known; NaN if there are none."""
+        timed = self.time_s > 0
+        time_s = self.time_s[timed].sum()
+        return float(self.way_m[timed].sum() / time_s) if timed.any() else np.nan
+
 
 @dataclass(frozen=True)
 class Way:
@@ -47,10 +58,7 @@ class Way:
 
     @property
     def speed_m_s(self) -> float:
-        """Mean over the steps whose time is known; NaN if there are none."""
-        timed = self.steps.time_s > 0
-        time_s = self.steps.time_s[timed].sum()
-        return float(self.steps.way_m[timed].sum() / time_s) if timed.any() else np.nan
+        return self.steps.speed_m_s
 
 
 @dataclass(frozen=True)
@@ -63,7 +71,7 @@ class Variability:
     cv: float  # SD by mean
 
 
-def variability(values: Sequence[float]) -> Variability:
+def variability(values: Sequence[float] | np.ndarray) -> Variability:
     """Of the values that are known; the SD is the sample's."""
     known = np.asarray(values, float)
     known = known[np.isfinite(known)]
@@ -74,12 +82,12 @@ def variability(values: Sequence[float]) -> Variability:
 
 def walked(run: Run) -> Way | None:
     """As measured if the feet were, else as planned; None if neither was logged."""
-    if any(_known(run, side).any() for side in SIDES):
+    if any(fresh(run, side).any() for side in SIDES):
         return _measured(run)
     return _planned(run) if run.has("plan") else None
 
 
-def _known(run: Run, part: str) -> np.ndarray:
+def fresh(run: Run, part: str) -> np.ndarray:
     """Ticks with a fresh measurement of a part (com, left, right) in which no fault was seen."""
     age_us = run.column("input", f"{part}_age_us")
     faulty = sum(1 << bit for bit, name in enumerate(FAULTS) if name.startswith(f"{part.upper()}_"))
@@ -100,7 +108,7 @@ def _measured(run: Run) -> Way:
 def _moved(run: Run) -> np.ndarray:
     """The CoM along x, since the tick before."""
     seen_m_s = _wide(run.column("input", "com_velocity_m_s", 0))
-    velocity_m_s = np.where(_known(run, "com"), seen_m_s, np.nan)
+    velocity_m_s = np.where(fresh(run, "com"), seen_m_s, np.nan)
     means_m_s = (velocity_m_s[1:] + velocity_m_s[:-1]) / 2
     moved_m = np.append(0.0, means_m_s * np.diff(run.time_s))
     moved_m[run.after_silence] = np.nan
@@ -115,7 +123,7 @@ def _wide(column: np.ndarray) -> np.ndarray:
 def _apart(run: Run, axis: int) -> np.ndarray:
     """The left foot from the right one."""
     left_m, right_m = (
-        np.where(_known(run, side), _wide(run.column("input", f"{side}_m", axis)), np.nan)
+        np.where(fresh(run, side), _wide(run.column("input", f"{side}_m", axis)), np.nan)
         for side in SIDES
     )
     return left_m - right_m
@@ -127,7 +135,7 @@ def _strikes(run: Run, side: str) -> np.ndarray:
     How long it was in the air is counted over the ticks in which it is known; contact and silence
     begin the count anew.
     """
-    known = _known(run, side)
+    known = fresh(run, side)
     contact = known & (run.column("input", f"{side}_contact") > 0)
     air_s = np.append(0.0, np.diff(run.time_s))
     air_s[contact | ~known] = 0.0
