@@ -52,7 +52,9 @@ static double amplitude(double width, double v)
 static saddle_expectation_t expect(const saddle_step_t *step, float x_m)
 {
     const saddle_step_place_t place = saddle_step_place(step, x_m);
-    return saddle_expect(model_of(&config), step, &place);
+    saddle_expectation_t expected;
+    saddle_expect(model_of(&config), step, &place, &expected);
+    return expected;
 }
 
 static saddle_step_t steady_step(saddle_side_t stance, double v)

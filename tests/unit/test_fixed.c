@@ -75,7 +75,8 @@ static void test_way_is_speed_times_time(void)
     for (int i = 0; i < 100000; i++) {
         const float speed = random_in(&state, 0.0f, 4.0f);
         const float time = random_in(&state, 0.0f, fminf(2.0f, 1.99f / speed));
-        const double way = metres(saddle_speed_times_s(saddle_speed_from_m_s(speed), time));
+        const double way =
+            metres(saddle_distance(saddle_speed_from_m_s(speed), saddle_time_from_s(time)));
         /* Time is counted in 2^-31 s, the way to 2^-41 m. */
         TEST_ASSERT_DOUBLE_WITHIN(5e-10 * (double)speed + 1e-12, (double)speed * (double)time, way);
     }
@@ -123,7 +124,7 @@ static void test_any_bits_give_a_number_within_the_range(void)
         const saddle_fixed_t speed = saddle_speed_from_m_s(value);
         TEST_ASSERT_TRUE(position >= -position_max && position <= position_max);
         TEST_ASSERT_TRUE(speed >= -speed_max && speed <= speed_max);
-        const saddle_fixed_t way = saddle_speed_times_s(any, value);
+        const saddle_fixed_t way = saddle_distance(any, saddle_time_from_s(value));
         TEST_ASSERT_TRUE(way >= -position_max && way <= position_max);
         const saddle_fixed_t sum = saddle_position_sum(any, position);
         TEST_ASSERT_TRUE(sum >= -position_max && sum <= position_max);

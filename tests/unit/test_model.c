@@ -72,7 +72,7 @@ static void test_walking_coefficients(void)
         const double intercept = (double)config.half_step_intercept_m;
         const double rate = (double)config.acceleration_m_s2;
         for (int foot = 0; foot < 2; foot++) {
-            assert_near(factors[foot] * slope, body->half_step_slope_s[foot]);
+            assert_near(factors[foot] * slope, (double)body->half_step_slope[foot] / 2147483648.0);
             assert_near(1e6 * factors[foot] * intercept,
                         micrometres(body->half_step_intercept[foot]));
         }

@@ -34,7 +34,8 @@ static saddle_scores_t score(const saddle_posture_t *posture)
 {
     saddle_scores_t scored;
     memset(&scored, 0, sizeof scored);
-    (void)saddle_score_posture(model_of(&config), posture, &scored);
+    saddle_support_t support;
+    saddle_score_posture(model_of(&config), posture, &scored, &support);
     return scored;
 }
 

@@ -256,6 +256,7 @@ saddle_status_t saddle_score_plan(const saddle_context_t *context, const saddle_
     posture.v_comp_m_s = plan->speed_m_s;
     posture.half_step_m = 0.5f * plan->step_length_m;
     posture.known = plan->valid ? (uint32_t)SADDLE_KNOWN_ALL : 0u;
-    saddle_score_posture(&context->model, &posture, scores);
+    saddle_support_t support;
+    saddle_score_posture(&context->model, &posture, scores, &support);
     return SADDLE_OK;
 }

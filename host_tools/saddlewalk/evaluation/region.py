@@ -160,7 +160,7 @@ def _work_max_j(config: Any) -> float:
 def _claims(posture: Posture, states: np.ndarray, config: Any) -> dict[str, np.ndarray]:
     core = library()
     model, seen = model_of(config), ffi().new("saddle_posture_t *")
-    scores = ffi().new("saddle_scores_t *")
+    scores, support = ffi().new("saddle_scores_t *"), ffi().new("saddle_support_t *")
     seen.known = core.SADDLE_KNOWN_FEET | core.SADDLE_KNOWN_VELOCITY
     for cop, (x_m, y_m) in zip(seen.cop_m, posture.cop_m, strict=True):
         cop.x, cop.y = x_m, y_m
@@ -168,7 +168,7 @@ def _claims(posture: Posture, states: np.ndarray, config: Any) -> dict[str, np.n
     for index, (x_m, y_m, vx_m_s, vy_m_s) in enumerate(states.tolist()):
         seen.com.com_m.x, seen.com.com_m.y = x_m, y_m
         seen.com.velocity_m_s.x, seen.com.velocity_m_s.y = vx_m_s, vy_m_s
-        core.saddle_score_posture(model, seen, scores)
+        core.saddle_score_posture(model, seen, scores, support)
         claimed["bos"][index] = scores.mos_com_m >= 0
         claimed["can_stop"][index] = scores.can_stop
         claimed["stays"][index] = scores.can_stop and scores.mos_xcom_m >= config.stop_margin_m

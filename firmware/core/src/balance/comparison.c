@@ -89,8 +89,8 @@ static SADDLE_NOINLINE void compare_standing(const saddle_model_t *model,
 
 /* The step that a steady walk makes on the stance foot, after a step as the last one was. Who is
  * faster than the ceiling makes steps of full reach. */
-static saddle_step_t nominal_step(const saddle_model_t *model, const saddle_step_tracker_t *steps,
-                                  float speed_m_s)
+static void nominal_step(const saddle_model_t *model, const saddle_step_tracker_t *steps,
+                         float speed_m_s, saddle_step_t *step)
 {
     const saddle_side_t stance = (saddle_side_t)steps->stance;
     const saddle_side_t foot = saddle_other_side(stance);
@@ -101,14 +101,12 @@ static saddle_step_t nominal_step(const saddle_model_t *model, const saddle_step
     const bool stepped = steps->half_step_known && steps->half_step_m > HALF_STEP_MIN_M;
     const float last_width_m =
         stepped ? saddle_clamp(steps->step_width_m, 0.5f * width_m, 2.0f * width_m) : width_m;
-    const saddle_step_t step = {
-        .stance = stance,
-        .speed_m_s = speed_m_s,
-        .half_behind_m = stepped ? steps->half_step_m : half_step_m,
-        .width_behind_m = last_width_m,
-        .landing_m = {2.0f * half_step_m, saddle_outward(foot) * last_width_m},
-    };
-    return step;
+    step->stance = stance;
+    step->speed_m_s = speed_m_s;
+    step->half_behind_m = stepped ? steps->half_step_m : half_step_m;
+    step->width_behind_m = last_width_m;
+    step->landing_m.x = 2.0f * half_step_m;
+    step->landing_m.y = saddle_outward(foot) * last_width_m;
 }
 
 /* The wearer is on the planned step: on its stance foot, if with the other one too. */
@@ -146,7 +144,8 @@ static void compare_step(const saddle_model_t *model, const saddle_wearer_t *wea
     const saddle_posture_t *posture = wearer->posture;
     const saddle_side_t stance = step->stance;
     const saddle_side_t other = saddle_other_side(stance);
-    saddle_expectation_t expected = saddle_expect(model, step, place);
+    saddle_expectation_t expected;
+    saddle_expect(model, step, place, &expected);
     const saddle_vec2_t stance_m = posture->cop_m[stance];
     const saddle_vec2_t trailing_m = saddle_vec2_sub(posture->cop_m[other], stance_m);
     const saddle_growth_t growth =
@@ -178,7 +177,8 @@ bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
     const float speed_m_s = intent->leads ? intent->step.speed_m_s : steps->v_comp_m_s;
     if (walks && saddle_in_range(speed_m_s, SPEED_MIN_M_S, SPEED_MAX_M_S)) {
         const saddle_posture_t *posture = wearer->posture;
-        const saddle_step_t own = nominal_step(model, steps, speed_m_s);
+        saddle_step_t own;
+        nominal_step(model, steps, speed_m_s, &own);
         const saddle_step_place_t place =
             saddle_step_place(&own, posture->com.com_m.x - posture->cop_m[own.stance].x);
         compare_step(model, wearer, &own, &place, verdict);

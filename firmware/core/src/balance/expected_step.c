@@ -37,8 +37,8 @@ saddle_step_place_t saddle_step_place(const saddle_step_t *step, float x_m)
 }
 
 /* [E28] */
-saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
-                                   const saddle_step_place_t *place)
+void saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
+                   const saddle_step_place_t *place, saddle_expectation_t *expected)
 {
     const float half_ahead_m = 0.5f * step->landing_m.x;
     const saddle_quarter_t ahead =
@@ -51,15 +51,13 @@ saddle_expectation_t saddle_expect(const saddle_model_t *model, const saddle_ste
     }
     const bool last_swing = half_ahead_m <= QUARTER_MIN_M;
     const saddle_shape_t *shape = saddle_shape(model, last_swing);
-    saddle_expectation_t expected;
-    expected.now = state_at(&running, shape, step->speed_m_s, place->x_m, place->phase);
-    expected.landing = state_at(&ahead, shape, step->speed_m_s, half_ahead_m,
-                                last_swing ? SADDLE_PHASE_FOOT : PHASE_SADDLE);
-    expected.landing_m = step->landing_m;
-    expected.time_s = saddle_smaller((half_ahead_m - place->x_m) / step->speed_m_s,
-                                     model->config.prediction_horizon_s);
-    expected.step_time_s = (half_ahead_m + step->half_behind_m) / step->speed_m_s;
-    return expected;
+    expected->now = state_at(&running, shape, step->speed_m_s, place->x_m, place->phase);
+    expected->landing = state_at(&ahead, shape, step->speed_m_s, half_ahead_m,
+                                 last_swing ? SADDLE_PHASE_FOOT : PHASE_SADDLE);
+    expected->landing_m = step->landing_m;
+    expected->time_s = saddle_smaller((half_ahead_m - place->x_m) / step->speed_m_s,
+                                      model->config.prediction_horizon_s);
+    expected->step_time_s = (half_ahead_m + step->half_behind_m) / step->speed_m_s;
 }
 
 /* [E29] */

@@ -92,10 +92,12 @@ static void score_nothing(saddle_scores_t *scores)
     scores->bos = saddle_bos_undefined();
 }
 
-saddle_support_t saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
-                                      saddle_scores_t *scores)
+void saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
+                          saddle_scores_t *scores, saddle_support_t *support)
 {
-    saddle_support_t support = {.cop_m = posture->cop_m, .bos = &scores->bos};
+    support->cop_m = posture->cop_m;
+    support->bos = &scores->bos;
+    support->at_com.reached = false;
     score_nothing(scores);
     if ((posture->known & SADDLE_KNOWN_VELOCITY) != 0u) {
         scores->xcom_m = saddle_xcom_m(posture->com.com_m, posture->com.velocity_m_s,
@@ -105,11 +107,11 @@ saddle_support_t saddle_score_posture(const saddle_model_t *model, const saddle_
         score_walk(model, posture, scores);
     }
     if ((posture->known & SADDLE_KNOWN_FEET) != 0u) {
-        support.at_com = saddle_surface(posture->cop_m, posture->com.com_m, model->body.pendulum_m);
-        score_space(model, posture, &support, scores);
+        support->at_com =
+            saddle_surface(posture->cop_m, posture->com.com_m, model->body.pendulum_m);
+        score_space(model, posture, support, scores);
     }
     scores->paper_stable = scores->can_stop || stable_step(scores);
-    return support;
 }
 
 uint32_t saddle_score_faults(uint32_t known, const saddle_scores_t *scores)

@@ -24,10 +24,11 @@ typedef struct {
     uint32_t known;    /**< saddle_known_t bits; the numbers of the others are not read */
 } saddle_posture_t;
 
-/** Score a posture. Whatever is not known is not scored. Writes all of *scores. Returns what carries the
- *  CoM, not reached if the feet are not known; it points to the posture's feet and the scores' BoS. */
-saddle_support_t saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
-                                      saddle_scores_t *scores);
+/** Score a posture. Whatever is not known is not scored. Writes all of *scores, and what
+ *  carries the CoM, not reached if the feet are not known: it points to the posture's feet and the
+ *  scores' BoS. */
+void saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *posture,
+                          saddle_scores_t *scores, saddle_support_t *support);
 
 /** Whether all of these saddle_valid_t results are there. */
 bool saddle_scores_hold(const saddle_scores_t *scores, uint32_t results);

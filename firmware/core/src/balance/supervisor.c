@@ -150,7 +150,8 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     const uint32_t known = known_of(supervisor, intent, sensed->faults);
     saddle_posture_t posture = {.known = known};
     read_posture(steps, sensed->measurement, intent, &posture);
-    const saddle_support_t support = saddle_score_posture(model, &posture, scores);
+    saddle_support_t support;
+    saddle_score_posture(model, &posture, scores, &support);
     const uint32_t faults = sensed->faults | saddle_score_faults(known, scores);
     saddle_compare_nothing(verdict);
     bool on_plan = false;

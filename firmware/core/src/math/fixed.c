@@ -88,16 +88,22 @@ saddle_fixed_t saddle_speed_change(float rate_m_s2, uint32_t dt_us)
            lower * SPEED_PER_2_POW_MINUS_27_UM_S / ((int64_t)1 << 36);
 }
 
-saddle_fixed_t saddle_speed_times_s(saddle_fixed_t speed, float time_s)
+uint32_t saddle_time_from_s(float time_s)
 {
     const float in_range_s = time_s > 0.0f ? limited(time_s, TIME_MAX_S) : 0.0f;
-    const int64_t in_range = limited_integer(speed, SPEED_MAX);
-    const int64_t time_q31 = (int64_t)(uint32_t)(in_range_s * TWO_POW_31);
-    const int64_t upper = in_range / ((int64_t)1 << 21);
-    const int64_t lower = in_range - upper * ((int64_t)1 << 21);
-    const int64_t distance_q42_m =
-        time_q31 * upper / ((int64_t)1 << 10) + time_q31 * lower / ((int64_t)1 << 31);
-    return limited_integer(distance_q42_m, (int64_t)2 << 42) * 1000000;
+    return (uint32_t)(in_range_s * TWO_POW_31);
+}
+
+/* In two parts, whose products have 64 bits. */
+saddle_fixed_t saddle_distance(saddle_fixed_t speed, uint32_t time_q31)
+{
+    const uint64_t in_range = speed > 0 ? (uint64_t)(speed < SPEED_MAX ? speed : SPEED_MAX) : 0u;
+    const uint32_t upper = (uint32_t)(in_range >> 21);
+    const uint32_t lower = (uint32_t)in_range & ((1u << 21) - 1u);
+    const uint64_t distance_q42_m =
+        ((uint64_t)time_q31 * upper >> 10) + ((uint64_t)time_q31 * lower >> 31);
+    const uint64_t max_q42_m = (uint64_t)2 << 42;
+    return (int64_t)(distance_q42_m < max_q42_m ? distance_q42_m : max_q42_m) * 1000000;
 }
 
 saddle_fixed_t saddle_position_sum(saddle_fixed_t a, saddle_fixed_t b)

@@ -26,8 +26,11 @@ float saddle_speed_to_m_s(saddle_fixed_t speed);
  *  to 2^-41 m/s and 2 parts in 10^10 of it, for a rate that is a multiple of 2^-27. */
 saddle_fixed_t saddle_speed_change(float rate_m_s2, uint32_t dt_us);
 
-/** Distance at a constant speed in time_s, limited to [0, 2); exact to 2^-41 m. */
-saddle_fixed_t saddle_speed_times_s(saddle_fixed_t speed, float time_s);
+/** A time, limited to [0, 2), in 2^-31 s. */
+uint32_t saddle_time_from_s(float time_s);
+
+/** Distance in such a time at a constant speed >= 0, a negative one counts as 0; exact to 2^-41 m. */
+saddle_fixed_t saddle_distance(saddle_fixed_t speed, uint32_t time_q31);
 
 saddle_fixed_t saddle_position_sum(saddle_fixed_t a, saddle_fixed_t b);
 

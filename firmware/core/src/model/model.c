@@ -64,7 +64,7 @@ static void derive_walk(const saddle_config_t *config, saddle_body_t *body)
     body->half_step_max_m = config->peak_speed_m_s / (2.0f * body->natural_frequency_rad_s);
     body->speed_ceiling_m_s = speed_ceiling_m_s(config, body);
     for (int foot = 0; foot < 2; foot++) {
-        body->half_step_slope_s[foot] = factors[foot] * config->half_step_slope_s;
+        body->half_step_slope[foot] = saddle_time_from_s(factors[foot] * config->half_step_slope_s);
         body->half_step_intercept[foot] =
             saddle_position_from_m(factors[foot] * config->half_step_intercept_m);
     }

@@ -18,12 +18,12 @@ saddle_sin_cos_t saddle_quarter_phase(float quarter_m, float x_m)
 /* [E7] */
 saddle_sample_t saddle_com_lateral(const saddle_quarter_t *quarter, saddle_sin_cos_t phase)
 {
-    const float outward = saddle_outward(quarter->stance);
-    const float amplitude_m = outward * quarter->amplitude_m;
-    saddle_sample_t lateral;
-    lateral.value = amplitude_m * phase.cos - outward * 0.5f * quarter->width_m;
-    lateral.slope = -amplitude_m * phase.sin * SADDLE_HALF_PI / quarter->length_m;
-    return lateral;
+    const float inward_m = 0.5f * quarter->width_m - quarter->amplitude_m * phase.cos;
+    const float slope = quarter->amplitude_m * phase.sin * SADDLE_HALF_PI / quarter->length_m;
+    if (quarter->stance == SADDLE_LEFT) {
+        return (saddle_sample_t){-inward_m, -slope};
+    }
+    return (saddle_sample_t){inward_m, slope};
 }
 
 /* A phase that lags by an angle of that sine and cosine. */

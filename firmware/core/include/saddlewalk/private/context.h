@@ -30,7 +30,7 @@ typedef struct {
     float natural_frequency_rad_s; /**< w_n, [E2] */
     float half_step_max_m;         /**< reach, [E6] */
     float speed_ceiling_m_s;       /**< no speed at or above it is planned, [E6] */
-    float half_step_slope_s[2];    /**< of the step that each foot makes, [E4] */
+    uint32_t half_step_slope[2];   /**< of the step that each foot makes, in 2^-31 s, [E4] */
     saddle_fixed_t half_step_intercept[2];
     float ankle_work_j;         /**< W_max, [E27] */
     float horizon_growth;       /**< of a deviation within prediction_horizon_s, [E29] */
