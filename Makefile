@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller coverage test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler samples physics bench-baselines format lint clean help
+.PHONY: build demo amalgamation controller coverage test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground samples physics bench-baselines format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -17,6 +17,10 @@ amalgamation: ## the core as one file to add to any build, build/saddlewalk.c
 
 controller: cross-compiler build-cortex-m4f/build.ninja ## the image for saddlewalk demo --firmware qemu-m4
 	@$(BIN)/ninja -C build-cortex-m4f --quiet saddlewalk-controller
+
+playground: build build-wasm32/build.ninja ## the core in a page that needs nothing, build/playground.html
+	@$(BIN)/ninja -C build-wasm32 --quiet playground
+	@$(BIN)/python -m saddlewalk.view.playground build-wasm32/bin/playground.wasm build/playground.html
 
 cross-compiler:
 	@echo | arm-none-eabi-gcc --specs=picolibc.specs -x c -E - >/dev/null 2>&1 || \
@@ -58,7 +62,7 @@ test-targets: build .venv/installed-test ## the core, the wire and their tests o
 	@$(BIN)/python tests/targets/run.py $(TARGETS)
 	@$(BIN)/python tests/summary.py $(TARGETS:%=build-%/reports/ctest.xml)
 
-TARGETS := cortex-m4f cortex-m7 cortex-m33 cortex-m3 rv32imafc i686 powerpc
+TARGETS := cortex-m4f cortex-m7 cortex-m33 cortex-m3 rv32imafc i686 powerpc wasm32
 
 # $(call run_tests,BUILD_DIR,CTEST_PRESET,ENVIRONMENT_OF_PYTEST)
 define run_tests
@@ -104,6 +108,7 @@ build-clang/build.ninja: PRESET := clang
 build-sanitize/build.ninja: PRESET := sanitize
 build-coverage/build.ninja: PRESET := coverage
 build-cortex-m4f/build.ninja: PRESET := cortex-m4f
+build-wasm32/build.ninja: PRESET := wasm32
 %/build.ninja: .venv/installed-build CMakePresets.json
 	@echo "Configuring $*"
 	@$(BIN)/cmake --preset $(PRESET) --fresh --log-level=WARNING

@@ -30,7 +30,7 @@ BARE_METAL = {
     "cortex-m3": ARM,
     "rv32imafc": RISCV,
 }
-# What a target needs (a program, or a folder), and the Debian package that has it.
+# What a target needs (a program, or a path with wildcards), and the Debian package that has it.
 NEEDS = {
     **BARE_METAL,
     "i686": {
@@ -43,11 +43,20 @@ NEEDS = {
         "/usr/powerpc-linux-gnu/lib/libc.a": "libc6-dev-powerpc-cross",
         "qemu-ppc-static": "qemu-user-static",
     },
+    "wasm32": {
+        "clang": "clang",
+        "wasm-ld": "lld",
+        "/usr/lib/wasm32-wasi/libc.a": "wasi-libc",
+        "/usr/lib/llvm-*/lib/clang/*/lib/wasi/*": "libclang-rt-dev-wasm32",
+        "node": "nodejs",
+    },
 }
 
 
 def is_there(need: str) -> bool:
-    return Path(need).exists() if need.startswith("/") else shutil.which(need) is not None
+    if need.startswith("/"):
+        return any(Path("/").glob(need[1:]))
+    return shutil.which(need) is not None
 
 
 def report_skip(target: str, missing: list[str]) -> None:

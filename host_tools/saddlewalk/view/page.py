@@ -1,5 +1,6 @@
-"""The page as one HTML document that asks for nothing else."""
+"""Pages as one HTML document each, which asks for nothing else."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from saddlewalk.paths import built
@@ -9,13 +10,17 @@ SCRIPTS = ("ticks.js", "geometry.js", "scene.js", "charts.js", "words.js", "app.
 
 
 def document(nonce: str) -> str:
-    """index.html with styles and scripts in place. nonce: by which the browser knows them."""
+    """The live page. nonce: by which the browser knows its scripts."""
+    return assembled("index.html", [WEB / name for name in SCRIPTS], nonce=nonce)
+
+
+def assembled(page: str, sources: Sequence[Path], data: str = "", nonce: str = "") -> str:
+    """A page with its styles, its data and its scripts in place."""
     styles = built("web/uPlot.min.css").read_text() + (WEB / "style.css").read_text()
-    sources = [built("web/uPlot.iife.js"), *(WEB / name for name in SCRIPTS)]
+    of = f' nonce="{nonce}"' if nonce else ""
     scripts = "".join(
-        f'<script nonce="{nonce}">{source.read_text()}</script>\n' for source in sources
+        f"<script{of}>{source.read_text()}</script>\n"
+        for source in (built("web/uPlot.iife.js"), *sources)
     )
-    page = (WEB / "index.html").read_text()
-    return page.replace("<!--styles-->", f"<style>{styles}</style>").replace(
-        "<!--scripts-->", scripts
-    )
+    text = (WEB / page).read_text().replace("<!--styles-->", f"<style>{styles}</style>")
+    return text.replace("<!--scripts-->", data + scripts)

@@ -38,7 +38,7 @@ function grid(board, step, horizontal) {
     const x = k * step;
     board.line([[x, board.centre.up - 9], [x, board.centre.up + 9]], COLOURS.line, 1);
     c.textAlign = "center";
-    c.fillText(`${x.toFixed(1)} m`, board.px(x), board.height - 4);
+    c.fillText(`${x.toFixed(step < 0.5 ? 2 : 1)} m`, board.px(x), board.height - 4);
   }
   if (!horizontal) return;
   const tall = board.height / 2 / board.scale;
@@ -166,6 +166,17 @@ function recoveryStands(read) {
   return !(apart < FAR_M) && read("verdict.level") !== 1;
 }
 
+function drawFigure(board, body) {
+  [1, 0].forEach((side) => {
+    const leg = body.legs[side];
+    const colour = COLOURS[SIDES[side]];
+    board.line([body.hip, leg.knee, leg.ankle].map((p) => [p.x, p.z]), colour, 6);
+    board.line([leg.heel, leg.toe, leg.ankle, leg.heel].map((p) => [p.x, p.z]), colour, 4);
+  });
+  board.line([[body.hip.x, body.hip.z], [body.shoulder.x, body.shoulder.z]], COLOURS.ink, 7);
+  board.dot(body.head.x, body.head.z, body.radius * board.scale, COLOURS.ink);
+}
+
 class Side {
   constructor(canvas) {
     this.board = new Board(canvas);
@@ -212,16 +223,8 @@ class Side {
       return { x: read(`${side}_x_m`), z: lifted ? planned[0] : 0, pitch: pitched ? planned[1] : 0 };
     });
     const body = figure(com, feet, height);
-    const board = this.board;
-    [1, 0].forEach((side) => {
-      const leg = body.legs[side];
-      const colour = COLOURS[SIDES[side]];
-      board.line([body.hip, leg.knee, leg.ankle].map((p) => [p.x, p.z]), colour, 6);
-      board.line([leg.heel, leg.toe, leg.ankle, leg.heel].map((p) => [p.x, p.z]), colour, 4);
-    });
-    board.line([[body.hip.x, body.hip.z], [body.shoulder.x, body.shoulder.z]], COLOURS.ink, 7);
-    board.dot(body.head.x, body.head.z, body.radius * board.scale, COLOURS.ink);
-    board.dot(com.x, com.z, 8, COLOURS.blue);
+    drawFigure(this.board, body);
+    this.board.dot(com.x, com.z, 8, COLOURS.blue);
   }
 }
 
