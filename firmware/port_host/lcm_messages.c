@@ -49,6 +49,8 @@ static saddlewalk_plan_t plan_message(const saddle_plan_t *plan, int64_t utime_u
         .time_to_via_point_s = plan->time_to_via_point_s,
         .time_to_heel_strike_s = plan->time_to_heel_strike_s,
         .time_to_toe_off_s = plan->time_to_toe_off_s,
+        .acceleration_m_s2 = plan->acceleration_m_s2,
+        .load = {plan->reference.load[SADDLE_LEFT], plan->reference.load[SADDLE_RIGHT]},
     };
     set3(message.com_m, plan->com_m);
     set3(message.com_velocity_m_s, plan->com_velocity_m_s);
@@ -56,6 +58,10 @@ static saddlewalk_plan_t plan_message(const saddle_plan_t *plan, int64_t utime_u
     set3(message.right_m, plan->foot_m[SADDLE_RIGHT]);
     set3(message.swing_velocity_m_s, plan->swing_velocity_m_s);
     set2(message.landing_m, plan->landing_m);
+    set2(message.last_step_m, plan->last_step_m);
+    set2(message.reference_com_m, plan->reference.com_m);
+    set2(message.reference_xcom_m, plan->reference.xcom_m);
+    set2(message.reference_cop_m, plan->reference.cop_m);
     return message;
 }
 

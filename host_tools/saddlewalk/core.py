@@ -96,6 +96,14 @@ class Core:
         library().saddle_score_plan(self._context, ffi().addressof(plan), scores)
         return scores
 
+    def reference_after(self, plan: Any, after_s: float) -> Any:
+        """saddle_reference_after(): the saddle_reference_t that long after a saddle_plan_t *."""
+        reference = ffi().new("saddle_reference_t *")
+        status = library().saddle_reference_after(self._context, plan, after_s, reference)
+        if status != library().SADDLE_OK:
+            raise ValueError(f"saddle_reference_after {after_s} s: status {status}")
+        return reference
+
     @staticmethod
     def _command(target: Any, command: Command) -> None:
         walk = command.speed_m_s is not None

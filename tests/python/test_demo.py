@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main
-from saddlewalk.config import load_config
+from saddlewalk.config import configuration, load_config
 from saddlewalk.contract import REASONS, TICK_S
 from saddlewalk.emulation.wearer import Push
 from saddlewalk.logs.messages import decode
@@ -283,7 +283,7 @@ def test_firmware_that_starts_slowly_is_sent_each_measurement_once(ports):
     with running_host(*options) as host, open_bus(ports[1]) as bus:
         host.send_signal(signal.SIGSTOP)
         threading.Timer(0.8, host.send_signal, [signal.SIGCONT]).start()
-        exoskeleton = Exoskeleton(bus, Wearer(), schedule_of([(0.0, 0.0)], 0.0))
+        exoskeleton = Exoskeleton(bus, Wearer(), configuration({}), schedule_of([(0.0, 0.0)], 0.0))
         exoskeleton.run("lockstep", 0.8)
     assert exoskeleton.ticks == 10
     assert exoskeleton.frames_sent == 10 * 4 + 1  # command and measurements; the last command

@@ -1,6 +1,5 @@
 """The emulated wearer: its physics, that it can fall, and that it walks as people do."""
 
-import cmath
 import itertools
 import math
 
@@ -20,7 +19,7 @@ from saddlewalk.emulation.wearer import (
     Plan,
     Push,
     RecoveryStep,
-    SteadyStep,
+    Reference,
     Wearer,
 )
 from saddlewalk.planning.schedule import schedule_of
@@ -95,23 +94,6 @@ def test_pendulum_energy_is_kept_while_the_cop_is_fixed():
     for _ in range(300):
         wearer.step()
     assert energy() == pytest.approx(before, abs=1e-12)
-
-
-@pytest.mark.parametrize(("step_m", "width_m", "step_s"), [(0.45, 0.22, 0.9), (0.85, 0.1, 0.53)])
-def test_steady_step_is_a_pendulum_and_its_own_mirror_image(step_m, width_m, step_s):
-    steady = SteadyStep(Body(), step_m, width_m, step_s)
-    w = Body().natural_frequency_rad_s
-    (cop_0, xcom_0), (cop_1, xcom_1) = steady.at(0.0), steady.at(step_s)
-    assert cmath.isclose((xcom_1 - step_m).conjugate(), xcom_0, abs_tol=1e-12)
-    assert cmath.isclose((cop_1 - step_m).conjugate(), cop_0, abs_tol=1e-12)
-    h = 1e-5
-    for time_s in np.linspace(2 * h, step_s - 2 * h, 50):
-        if abs(time_s - Body().double_support * step_s) < 2 * h:
-            continue  # the CoP changes its pace
-        cop, xcom = steady.at(time_s)
-        rate = (steady.at(time_s + h)[1] - steady.at(time_s - h)[1]) / (2 * h)
-        # Central difference: h^2 w^3 / 6, and 1e-16 / h of rounding.
-        assert abs(rate - w * (xcom - cop)) < 1e-8
 
 
 def test_same_seed_same_bits_and_another_seed_others():
@@ -223,6 +205,7 @@ def test_a_recovery_step_goes_to_its_place_and_no_faster_than_the_leg():
             swing_velocity_m_s=2.8 + 0j, swing_rise_m_s=0.0, time_to_via_point_s=0.25,
             time_to_landing_s=0.25, landing_m=0.7 + 0.1j, leg_length_m=1.02, height_m=1.0,
             pitch_rad=(0.0, 0.0), recovery=recovery,
+            reference=lambda after_s: Reference(0j, 0.4 + 0.05j),
         )  # fmt: skip
 
     wearer = Wearer(body, STEADY)

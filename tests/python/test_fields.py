@@ -33,7 +33,7 @@ FIELDS = """
     plan.origin_x_nm            -                               plan.origin_x_m
     plan.speed_m_s              PLAN_ANKLE.SPEED                plan.speed_m_s
     plan.step_length_m          PLAN_STEP.STEP_LENGTH           plan.step_length_m
-    plan.step_width_m           -                               plan.step_width_m
+    plan.step_width_m           PLAN_LAST_STEP.WIDTH                         plan.step_width_m
     plan.com_m.x                PLAN_COM.X                      plan.com_m[0]
     plan.com_m.y                PLAN_COM.Y                      plan.com_m[1]
     plan.com_m.z                PLAN_COM.Z                      plan.com_m[2]
@@ -60,6 +60,17 @@ FIELDS = """
     plan.time_to_toe_off_s      PLAN_EVENTS.TIME_TO_TOE_OFF     plan.time_to_toe_off_s
     plan.landing_m.x            PLAN_LANDING.X                  plan.landing_m[0]
     plan.landing_m.y            PLAN_LANDING.Y                  plan.landing_m[1]
+    plan.acceleration_m_s2      PLAN_REFERENCE_COM.RATE         plan.acceleration_m_s2
+    plan.last_step_m.x          PLAN_LAST_STEP.X                plan.last_step_m[0]
+    plan.last_step_m.y          PLAN_LAST_STEP.Y                plan.last_step_m[1]
+    plan.reference.com_m.x      PLAN_REFERENCE_COM.X            plan.reference_com_m[0]
+    plan.reference.com_m.y      PLAN_REFERENCE_COM.Y            plan.reference_com_m[1]
+    plan.reference.xcom_m.x     PLAN_REFERENCE_XCOM.X           plan.reference_xcom_m[0]
+    plan.reference.xcom_m.y     PLAN_REFERENCE_XCOM.Y           plan.reference_xcom_m[1]
+    plan.reference.cop_m.x      PLAN_REFERENCE_COP.X            plan.reference_cop_m[0]
+    plan.reference.cop_m.y      PLAN_REFERENCE_COP.Y            plan.reference_cop_m[1]
+    plan.reference.load[0]      PLAN_REFERENCE_XCOM.LOAD_LEFT   plan.load[0]
+    plan.reference.load[1]      PLAN_REFERENCE_COP.LOAD_RIGHT   plan.load[1]
     scores.v_comp_m_s           SCORES_MARGIN.V_COMP            scores.v_comp_m_s
     scores.s_pend               SCORES_STEP.S_PEND              scores.s_pend
     scores.s_jump               SCORES_STEP.S_JUMP              scores.s_jump
@@ -109,7 +120,7 @@ DATABASE = cantools.database.load_file(paths.CHECKOUT / "firmware/wire/saddlewal
 ON_HEALTH = {"status", "limits", "faults"}
 # Left out on CAN: 16 bits do not hold them, or they follow from what is there.
 ON_LCM_ALONE = {
-    *("plan.stride_count", "plan.origin_x_nm", "plan.step_width_m"),
+    *("plan.stride_count", "plan.origin_x_nm"),
     *("scores.xcom_m.x", "scores.xcom_m.y"),
 }
 # Drawn as a polygon by LCM, and not on CAN.

@@ -101,7 +101,8 @@ def test_a_walk_starts_at_the_same_tick_on_the_same_foot(clock, seed):
     with running_host(f"--can={spec}", f"--lcm={url}", f"--clock={clock}"), open_bus(spec) as bus:
         time.sleep(0.02 * seed)
         schedule = schedule_of([(0.0, 0.0), (1.0, 0.8)], 0.17)
-        Exoskeleton(bus, wearer, schedule, open_lcm(url), [start]).run(clock, 1.5)
+        exoskeleton = Exoskeleton(bus, wearer, config, schedule, open_lcm(url), [start])
+        exoskeleton.run(clock, 1.5)
     assert start.seen == (1.04, RIGHT)
 
 

@@ -6,9 +6,13 @@ import time
 import can
 import pytest
 
+from saddlewalk.config import configuration
+from saddlewalk.core import Core
 from saddlewalk.emulation.exoskeleton import plan_of
 from saddlewalk.ticks import MESSAGES, TickReader, next_tick
 from saddlewalk.transport.wire import Sender
+
+FIRMWARE = Core(configuration({}))
 
 
 def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
@@ -36,6 +40,10 @@ def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
             "TIME_TO_TOE_OFF": 0.3,
         },
         "PLAN_PITCH": {"LEFT": 0.0, "RIGHT": 0.0, "KNEE_FLEXION": 0.0},
+        "PLAN_REFERENCE_XCOM": {"X": 0.39, "Y": 0.02, "LOAD_LEFT": 1.0},
+        "PLAN_REFERENCE_COP": {"X": 0.02, "Y": 0.05, "LOAD_RIGHT": 0.0},
+        "PLAN_REFERENCE_COM": {"X": 0.0, "Y": 0.02, "RATE": 0.0},
+        "PLAN_LAST_STEP": {"X": 0.7, "Y": 0.1, "WIDTH": 0.1},
         "SCORES_STEP": {"S_PEND": 1.0, "S_JUMP": 1.0, "S_SW": 1.0},
         "SCORES_MARGIN": {"MOS_COM": 0.1, "MOS_XCOM": 0.1, "V_COMP": 1.2},
         "SCORES_FORCE": {"GRAVITY_X": 0.0, "GRAVITY_Y": 0.0, "FAULTS": 0},
@@ -88,13 +96,14 @@ def test_a_tick_with_a_lost_frame_is_not_used(lost):
     ]
     assert not any(reader.feed(frame) for frame in second[:lost] + second[lost + 1 :])
     heard = [reader.feed(frame) for frame in third]
-    assert plan_of(heard[-1]).speed_m_s == pytest.approx(1.2) and not any(heard[:-1])
+    assert not any(heard[:-1])
+    assert plan_of(heard[-1], FIRMWARE).speed_m_s == pytest.approx(1.2)
 
 
 def test_a_plan_with_a_number_that_is_not_available_is_no_plan():
     sender, reader = Sender(), TickReader()
     heard = [reader.feed(frame) for frame in tick_frames(sender, Y=math.nan)]
-    assert plan_of(heard[-1]) is None
+    assert plan_of(heard[-1], FIRMWARE) is None
 
 
 class Flooded:

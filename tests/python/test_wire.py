@@ -14,7 +14,7 @@ from saddlewalk import paths, ticks
 from saddlewalk.transport import wire
 
 SEED = 20261122
-OUTPUTS = 1000  # of 25 frames
+OUTPUTS = 1000  # of 29 frames
 INPUTS = 3000  # of 4 frames
 
 NUMBERS = {
@@ -51,6 +51,26 @@ NUMBERS = {
         "LEFT": "plan.foot_pitch_rad.0",
         "RIGHT": "plan.foot_pitch_rad.1",
         "KNEE_FLEXION": "plan.knee_flexion_m",
+    },
+    "PLAN_REFERENCE_XCOM": {
+        "X": "plan.reference.xcom_m.x",
+        "Y": "plan.reference.xcom_m.y",
+        "LOAD_LEFT": "plan.reference.load.0",
+    },
+    "PLAN_REFERENCE_COP": {
+        "X": "plan.reference.cop_m.x",
+        "Y": "plan.reference.cop_m.y",
+        "LOAD_RIGHT": "plan.reference.load.1",
+    },
+    "PLAN_REFERENCE_COM": {
+        "X": "plan.reference.com_m.x",
+        "Y": "plan.reference.com_m.y",
+        "RATE": "plan.acceleration_m_s2",
+    },
+    "PLAN_LAST_STEP": {
+        "X": "plan.last_step_m.x",
+        "Y": "plan.last_step_m.y",
+        "WIDTH": "plan.step_width_m",
     },
     "SCORES_STEP": {"S_PEND": "scores.s_pend", "S_JUMP": "scores.s_jump", "S_SW": "scores.s_sw"},
     "SCORES_MARGIN": {

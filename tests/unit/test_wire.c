@@ -239,8 +239,8 @@ static void assert_judgement(const saddle_output_t *output, const uint8_t expect
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_wire_encode_output(output, &health, 7, frames);
     for (size_t i = 0; i < 4u; ++i) {
-        TEST_ASSERT_EQUAL_HEX16(0x133u + i, frames[13u + i].id);
-        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[13u + i].data[1], 7);
+        TEST_ASSERT_EQUAL_HEX16(0x133u + i, frames[17u + i].id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[17u + i].data[1], 7);
     }
 }
 
@@ -285,8 +285,8 @@ static void assert_balance(const saddle_output_t *output, const uint8_t expected
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_wire_encode_output(output, &health, 7, frames);
     for (size_t i = 0; i < 4u; ++i) {
-        TEST_ASSERT_EQUAL_HEX16(0x137u + i, frames[17u + i].id);
-        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[17u + i].data[1], 7);
+        TEST_ASSERT_EQUAL_HEX16(0x137u + i, frames[21u + i].id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[21u + i].data[1], 7);
     }
 }
 
@@ -352,8 +352,8 @@ static void test_process_bytes(void)
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_wire_encode_output(&output, &health, 7, frames);
     for (size_t i = 0; i < 4u; ++i) {
-        TEST_ASSERT_EQUAL_HEX16(0x13Du + i, frames[21u + i].id);
-        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[21u + i].data[1], 7);
+        TEST_ASSERT_EQUAL_HEX16(0x13Du + i, frames[25u + i].id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[25u + i].data[1], 7);
     }
 }
 

@@ -7,6 +7,7 @@
 #include "model/model.h"
 #include "motion/plan_output.h"
 #include "motion/planner.h"
+#include "motion/reference.h"
 #include "motion/standing.h"
 #include "sense/plausibility.h"
 #include "sense/safe_state.h"
@@ -18,6 +19,9 @@
 
 /* The largest tick_max_s that is accepted. */
 #define TICK_LIMIT_US 250000u
+
+/* Within this a plan is followed by the step after it at most. */
+#define REFERENCE_AHEAD_MAX_S 0.5f
 
 saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *config)
 {
@@ -228,6 +232,26 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
     saddle_copy(&planner, &context->planner, sizeof planner);
     advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
     saddle_plan_write(&planner, &context->model, plan);
+    return SADDLE_OK;
+}
+
+saddle_status_t saddle_reference_after(const saddle_context_t *context, const saddle_plan_t *plan,
+                                       float after_s, saddle_reference_t *reference)
+{
+    if (reference == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    saddle_clear(reference, sizeof *reference);
+    if (context == NULL || plan == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    if (context->initialised != INITIALISED) {
+        return SADDLE_ERROR_UNINITIALISED;
+    }
+    if (!plan->valid || !(after_s >= 0.0f && after_s <= REFERENCE_AHEAD_MAX_S)) {
+        return SADDLE_ERROR_TIME;
+    }
+    saddle_reference(&context->model, plan, after_s, reference);
     return SADDLE_OK;
 }
 

@@ -376,6 +376,28 @@ static void encode_events_plan(const saddle_plan_t *plan, uint8_t counter, saddl
                NUMBER(PLAN_PITCH_KNEE_FLEXION, valid, plan->knee_flexion_m));
 }
 
+static void encode_reference(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
+{
+    const bool valid = plan->valid;
+    const saddle_reference_t *reference = &plan->reference;
+    ENCODE(&frames[0], PLAN_REFERENCE_XCOM, counter,
+           NUMBER(PLAN_REFERENCE_XCOM_X, valid, reference->xcom_m.x) |
+               NUMBER(PLAN_REFERENCE_XCOM_Y, valid, reference->xcom_m.y) |
+               NUMBER(PLAN_REFERENCE_XCOM_LOAD_LEFT, valid, reference->load[SADDLE_LEFT]));
+    ENCODE(&frames[1], PLAN_REFERENCE_COP, counter,
+           NUMBER(PLAN_REFERENCE_COP_X, valid, reference->cop_m.x) |
+               NUMBER(PLAN_REFERENCE_COP_Y, valid, reference->cop_m.y) |
+               NUMBER(PLAN_REFERENCE_COP_LOAD_RIGHT, valid, reference->load[SADDLE_RIGHT]));
+    ENCODE(&frames[2], PLAN_REFERENCE_COM, counter,
+           NUMBER(PLAN_REFERENCE_COM_X, valid, reference->com_m.x) |
+               NUMBER(PLAN_REFERENCE_COM_Y, valid, reference->com_m.y) |
+               NUMBER(PLAN_REFERENCE_COM_RATE, valid, plan->acceleration_m_s2));
+    ENCODE(&frames[3], PLAN_LAST_STEP, counter,
+           NUMBER(PLAN_LAST_STEP_X, valid, plan->last_step_m.x) |
+               NUMBER(PLAN_LAST_STEP_Y, valid, plan->last_step_m.y) |
+               NUMBER(PLAN_LAST_STEP_WIDTH, valid, plan->step_width_m));
+}
+
 static bool holds(const saddle_scores_t *scores, saddle_valid_t result)
 {
     return (scores->valid & (uint32_t)result) != 0u;
@@ -505,13 +527,14 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
     encode_feet_plan(&output->plan, counter, &frames[2]);
     encode_step_plan(&output->plan, counter, &frames[5]);
     encode_events_plan(&output->plan, counter, &frames[8]);
-    encode_scores(&output->scores, output->faults, counter, &frames[10]);
-    encode_foresight(&output->scores, &output->verdict, counter, &frames[13]);
-    encode_verdict(&output->verdict, counter, &frames[15]);
-    encode_balance(&output->verdict, counter, &frames[17]);
-    encode_learned_walk(&output->walk, counter, &frames[18]);
-    encode_process(health, counter, &frames[21]);
-    encode_health(output, health, counter, &frames[24]);
+    encode_reference(&output->plan, counter, &frames[10]);
+    encode_scores(&output->scores, output->faults, counter, &frames[14]);
+    encode_foresight(&output->scores, &output->verdict, counter, &frames[17]);
+    encode_verdict(&output->verdict, counter, &frames[19]);
+    encode_balance(&output->verdict, counter, &frames[21]);
+    encode_learned_walk(&output->walk, counter, &frames[22]);
+    encode_process(health, counter, &frames[25]);
+    encode_health(output, health, counter, &frames[28]);
 }
 
 void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,

@@ -143,7 +143,7 @@ def _walk(
                 schedule = Steering(schedule, wearer, page)
                 observers.append(schedule)
             exoskeleton = Exoskeleton(
-                *(bus, wearer, schedule, lcm, observers),
+                *(bus, wearer, config, schedule, lcm, observers),
                 key=key,
                 joint_core=plant.joint_core(config),
             )

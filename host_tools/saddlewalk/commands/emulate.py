@@ -139,7 +139,7 @@ def run(args: argparse.Namespace) -> int:
         ways = faulty(bus, lcm, occurrences, args.seed) if occurrences else (bus, lcm)
         start = "start saddlewalk-host there with the same --clock and --lcm"
         exoskeleton = Exoskeleton(
-            *(ways[0], wearer, schedule, ways[1], [events]),
+            *(ways[0], wearer, config, schedule, ways[1], [events]),
             fresh=False,
             if_silent=start,
             key=key,

@@ -42,7 +42,7 @@ def walk(
         time_s = index * TICK_S
         time_us = round(time_s * 1e6)
         output = firmware.tick(time_us, schedule(time_s), measurement_of(measured))
-        tick = Tick(time_s, measured, exact, output, plan_of(output))
+        tick = Tick(time_s, measured, exact, output, plan_of(output, firmware))
         wearer.follow(tick.plan, functools.partial(_plan_at, firmware, time_us))
         yield tick
         for step in range(1, STEPS_A_TICK + 1):
@@ -65,4 +65,4 @@ def measurement_of(measured: emulator.Measurement) -> core.Measurement:
 
 
 def _plan_at(firmware: core.Core, time_us: int, since_s: float) -> Plan | None:
-    return planned(firmware.plan_at(time_us + round(since_s * 1e6)))
+    return planned(firmware.plan_at(time_us + round(since_s * 1e6))[0], firmware)

@@ -10,15 +10,16 @@ from typing import Any
 
 import can
 
+from saddlewalk import core
 from saddlewalk.contract import LEFT, RIGHT, STAND, STANDING, TICK_S, WALK
+from saddlewalk.emulation import plans
 from saddlewalk.emulation.paced_ticks import WAKE_UP_S, PacedTicks
-from saddlewalk.emulation.plans import planned
 from saddlewalk.emulation.punctuality import Punctuality
-from saddlewalk.emulation.wearer import STEP_S, Measurement, Plan, PlanAt, RecoveryStep, Wearer
+from saddlewalk.emulation.wearer import STEP_S, Measurement, Plan, PlanAt, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.lockstep_host import LockstepHost
 from saddlewalk.planning.schedule import Schedule
-from saddlewalk.ticks import PLAN_MESSAGES, FrameBus, Messages, TickReader, next_tick
+from saddlewalk.ticks import PLAN_MESSAGES, FrameBus, Messages, Signals, TickReader, next_tick
 from saddlewalk.transport.authentication import Authenticator
 from saddlewalk.transport.wire import Sender, identifier
 
@@ -52,48 +53,62 @@ class Observer:
         """At least once a tick: time to read other inputs."""
 
 
-def plan_of(messages: Messages) -> Plan | None:
-    """The plan of one tick; None if the tick failed or a number of it is not available."""
-    step, swing, landing = messages["PLAN_STEP"], messages["PLAN_SWING"], messages["PLAN_LANDING"]
-    com, velocity = messages["PLAN_COM"], messages["PLAN_COM_VELOCITY"]
-    left, right = messages["PLAN_LEFT"], messages["PLAN_RIGHT"]
-    events, pitch = messages["PLAN_EVENTS"], messages["PLAN_PITCH"]
+def plan_of(messages: Messages, own_core: core.Core) -> Plan | None:
+    """The plan of one tick; None if the tick failed or a number of it is not available.
+
+    own_core: any with its configuration, for what the plan says between ticks.
+    """
     numbers = [value for part in PLAN_MESSAGES for value in messages[part].values()]
-    if not step["VALID"] or not all(map(math.isfinite, numbers)):
+    if not messages["PLAN_STEP"]["VALID"] or not all(map(math.isfinite, numbers)):
         return None
-    return Plan(
-        mode=int(events["MODE"]),
-        support=int(step["SUPPORT"]),
-        step_length_m=step["STEP_LENGTH"],
-        speed_m_s=messages["PLAN_ANKLE"]["SPEED"],
-        com_m=complex(com["X"], com["Y"]),
-        velocity_m_s=complex(velocity["VX"], velocity["VY"]),
-        feet_m=(complex(left["X"], left["Y"]), complex(right["X"], right["Y"])),
-        foot_heights_m=(left["Z"], right["Z"]),
-        swing_velocity_m_s=complex(swing["VX"], swing["VY"]),
-        swing_rise_m_s=swing["VZ"],
-        time_to_via_point_s=events["TIME_TO_VIA_POINT"],
-        time_to_landing_s=events["TIME_TO_TOE_OFF"],
-        landing_m=complex(landing["X"], landing["Y"]),
-        leg_length_m=landing["LEG_LENGTH"],
-        height_m=com["Z"],
-        pitch_rad=(pitch["LEFT"], pitch["RIGHT"]),
-        recovery=_recovery_of(messages),
+    return plans.plan_of(output_of(messages), own_core)
+
+
+def output_of(messages: Messages) -> Any:
+    """The saddle_output_t as far as a wearer needs it: plan, XCoM deviation and recovery step."""
+    output = core.ffi().new("saddle_output_t *")
+    plan, verdict = output.plan, output.verdict
+    step, events, pendulum = (
+        messages[f"PLAN_{part}"] for part in ("STEP", "EVENTS", "REFERENCE_COM")
     )
+    plan.valid, plan.mode = True, int(events["MODE"])
+    plan.support, plan.phase = int(step["SUPPORT"]), int(step["PHASE"])
+    plan.speed_m_s, plan.acceleration_m_s2 = messages["PLAN_ANKLE"]["SPEED"], pendulum["RATE"]
+    plan.step_length_m = step["STEP_LENGTH"]
+    plan.step_width_m = messages["PLAN_LAST_STEP"]["WIDTH"]
+    plan.time_to_via_point_s = events["TIME_TO_VIA_POINT"]
+    plan.time_to_toe_off_s = events["TIME_TO_TOE_OFF"]
+    plan.leg_length_m = messages["PLAN_LANDING"]["LEG_LENGTH"]
+    plan.foot_pitch_rad = [messages["PLAN_PITCH"][side] for side in ("LEFT", "RIGHT")]
+    for vector, name in (
+        (plan.com_m, "PLAN_COM"),
+        (plan.com_velocity_m_s, "PLAN_COM_VELOCITY"),
+        (plan.foot_m[LEFT], "PLAN_LEFT"),
+        (plan.foot_m[RIGHT], "PLAN_RIGHT"),
+        (plan.swing_velocity_m_s, "PLAN_SWING"),
+        (plan.landing_m, "PLAN_LANDING"),
+        (plan.last_step_m, "PLAN_LAST_STEP"),
+        (verdict.recovery.landing_m, "RECOVERY"),
+        (verdict.xcom_deviation_m, "VERDICT"),
+    ):
+        _fill(vector, messages[name])
+    verdict.recovery.found = bool(messages["RECOVERY"]["FOUND"])
+    verdict.recovery.foot = int(messages["RECOVERY"]["FOOT"])
+    return output
 
 
-def _recovery_of(messages: Messages) -> RecoveryStep | None:
-    step, verdict = messages["RECOVERY"], messages["VERDICT"]
-    if not step["FOUND"]:
-        return None
-    deviation_m = complex(verdict["XCOM_DEVIATION_X"], verdict["XCOM_DEVIATION_Y"])
-    return RecoveryStep(int(step["FOOT"]), complex(step["X"], step["Y"]), deviation_m)
+def _fill(vector: Any, signals: Signals) -> None:
+    """From the signals X, VX or XCOM_DEVIATION_X, and so on."""
+    for name, value in signals.items():
+        if name[-1] in "XYZ" and hasattr(vector, name[-1].lower()):
+            setattr(vector, name[-1].lower(), value)
 
 
 class Exoskeleton:
     """Sends the wearer's measurements, follows the plan that comes back, publishes the truth.
 
     A walk in progress is stopped first: ours begins when the firmware plans to stand.
+    config: the firmware's saddle_config_t.
     fresh: the firmware was started for this walk and has not received anything yet.
     if_silent: what the user can do when no firmware answers.
     key: authenticates the commands, which then go by CAN alone.
@@ -105,6 +120,7 @@ class Exoskeleton:
         self,
         bus: FrameBus,
         wearer: Wearer,
+        config: Any,
         schedule: Schedule,
         lcm: Any = None,
         observers: Iterable[Observer] = (),
@@ -124,6 +140,7 @@ class Exoskeleton:
         self._fresh, self._if_silent = fresh, if_silent
         self._sender = Sender()
         self._authenticator = None if key is None else Authenticator(key)
+        self._own_core = core.Core(config)
         self._joint_core = joint_core
         self._codes_demanded = False
         self._begun = False
@@ -213,7 +230,7 @@ class Exoskeleton:
         return self.reader.feed(frame)
 
     def _take(self, messages: Messages) -> None:
-        plan = plan_of(messages)
+        plan = plan_of(messages, self._own_core)
         self._begun = self._begun or (plan is not None and plan.mode == STANDING)
         plan = plan if self._begun else None
         self.ticks += 1
@@ -229,16 +246,16 @@ class Exoskeleton:
 
     def _plan_at(self, plan: Plan | None) -> PlanAt | None:
         """That of the joint controller's core, until the next tick; it must agree with `plan`."""
-        core = self._joint_core
-        if core is None or plan is None:
+        joint_core, own_core = self._joint_core, self._own_core
+        if joint_core is None or plan is None:
             return None
-        own = planned(core.plan_at(0.0))
+        own = plans.planned(joint_core.plan_at(0.0)[0], own_core)
         if own is None or not own.agrees(plan):
             raise UserError(
                 f"the firmware on {self._bus.channel_info} plans otherwise than the joint "
                 "controller, which has heard the same: start it anew, with the same configuration"
             )
-        return lambda since_s: planned(core.plan_at(since_s))
+        return lambda since_s: plans.planned(joint_core.plan_at(since_s)[0], own_core)
 
     def _wrong_response(self) -> UserError:
         options = "--command-key" if self._codes_demanded else "--clock and --lcm"

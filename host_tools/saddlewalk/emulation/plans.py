@@ -2,21 +2,32 @@
 
 from typing import Any
 
-from saddlewalk.emulation.wearer import Plan, RecoveryStep
+from saddlewalk.core import Core, ffi
+from saddlewalk.emulation.wearer import Plan, RecoveryStep, Reference
 
 
-def plan_of(output: Any) -> Plan:
-    """The plan and the recovery step of a saddle_output_t."""
-    plan = planned(output.plan, _recovery_of(output.verdict))
+def plan_of(output: Any, core: Core) -> Plan:
+    """The plan and the recovery step of a saddle_output_t; core: any with its configuration."""
+    plan = planned(output.plan, core, _recovery_of(output.verdict))
     assert plan is not None  # a tick that did not fail has one
     return plan
 
 
-def planned(plan: Any, recovery: RecoveryStep | None = None) -> Plan | None:
-    """A saddle_plan_t; None if it is not valid."""
+def planned(plan: Any, core: Core, recovery: RecoveryStep | None = None) -> Plan | None:
+    """A saddle_plan_t, which may be reused; None if it is not valid.
+
+    core: any with its configuration, for what the plan says of the time after it.
+    """
     if not plan.valid:
         return None
     left, right = plan.foot_m
+    kept = ffi().new("saddle_plan_t *")
+    ffi().memmove(kept, ffi().addressof(plan), ffi().sizeof(kept[0]))
+
+    def reference(after_s: float) -> Reference:
+        told = core.reference_after(kept, after_s)
+        return Reference(_point(told.cop_m), _point(told.xcom_m))
+
     return Plan(
         mode=plan.mode,
         support=plan.support,
@@ -34,6 +45,7 @@ def planned(plan: Any, recovery: RecoveryStep | None = None) -> Plan | None:
         leg_length_m=plan.leg_length_m,
         height_m=plan.com_m.z,
         pitch_rad=tuple(plan.foot_pitch_rad),
+        reference=reference,
         recovery=recovery,
     )
 

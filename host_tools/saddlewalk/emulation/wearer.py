@@ -21,8 +21,6 @@ from saddlewalk.contract import GRAVITY_M_S2, LEFT, RIGHT, STARTING
 
 STEP_S = 1e-3
 STANCE_M = 0.11  # from the middle to each foot of a wearer who stands and waits
-SPEED_MIN_M_S = 0.01  # slower steps last as long as if so fast
-REST_SHARE = 1 - 2 / math.pi  # of the way to the middle, from the foot over which a walk ends
 NEARBY_M = 0.08 + 0.05j  # a recovery step this close to the planned one is ignored
 IN_NEED_M = 0.13 + 0.07j  # the wearer hurries if the XCoM is off the planned one by more
 BUS_ROUNDING_M = 1e-3  # of a point on CAN, at most
@@ -31,11 +29,7 @@ ARRIVED_M = 0.02  # within this distance a step has reached its place
 
 @dataclass(frozen=True)
 class Body:
-    """The wearer. Mass, height and pendulum ratio as in the firmware's configuration.
-
-    `double_support`, `heel_m` and `toe_m` were tuned in November 2026 so that the unperturbed XCoM
-    and speed vary as in recorded adults (0.07 m, 0.12 m/s): see tests/python/test_emulator.py.
-    """
+    """The wearer. Mass to double support are as in the firmware's configuration."""
 
     mass_kg: float = 63.3
     height_m: float = 1.79
@@ -43,9 +37,6 @@ class Body:
     foot_half_length_m: float = 0.10  # reach of the CoP from the middle of the foot
     foot_half_width_m: float = 0.03
     double_support: float = 0.16  # share of a step after heel strike with both feet loaded
-    heel_m: float = -0.02  # where the CoP of a steady walk enters the foot, from its middle
-    toe_m: float = 0.08  # and where it leaves
-    inner_m: float = 0.02  # the CoP of a first or last swing, from the middle to the other foot
     cop_gain: float = 1.5  # XCoM errors shrink at cop_gain * natural frequency
     cop_lag_s: float = 0.03
     foot_lag_s: float = 0.03
@@ -61,6 +52,7 @@ class Body:
             height_m=config.body_height_m,
             pendulum_ratio=config.pendulum_ratio,
             foot_half_length_m=config.cop_range_m,
+            double_support=config.double_support_share,
         )
 
     @property
@@ -115,6 +107,14 @@ class RecoveryStep:
 
 
 @dataclass(frozen=True)
+class Reference:
+    """What to balance by: CoP within the feet, and XCoM of the pendulum that takes the steps."""
+
+    cop_m: complex
+    xcom_m: complex
+
+
+@dataclass(frozen=True)
 class Plan:
     """The firmware's plan at one tick: x from the planned stance CoP, y from the walking line."""
 
@@ -134,6 +134,7 @@ class Plan:
     leg_length_m: float
     height_m: float  # of the CoM
     pitch_rad: tuple[float, float]  # of the soles, positive heel up
+    reference: Callable[[float], Reference]  # that many seconds after this plan
     recovery: RecoveryStep | None = None  # None: no place helps, or nothing to compare with
 
     def agrees(self, other: "Plan") -> bool:
@@ -178,45 +179,6 @@ class Measurement:
     velocity_m_s: complex
     feet_m: tuple[complex, complex]
     contact: tuple[bool, bool]
-
-
-class SteadyStep:
-    """The XCoM of the steady walk that feet can produce.
-
-    The plan's CoM moves at constant speed, for which the CoP would have to glide along under it. A
-    wearer takes the same steps at the same times with a CoP that crosses to the new foot during
-    double support and then rolls from heel to toe. While the CoP p moves evenly, the XCoM is
-    p + p'/w + c exp(w t); c follows from each step being the mirror image of the one before.
-
-    Left support; x from the stance foot, y from midway between the feet, time from landing.
-    """
-
-    def __init__(self, body: Body, step_m: float, width_m: float, step_s: float) -> None:
-        self._w = w = body.natural_frequency_rad_s
-        self._crossing_s = crossing_s = body.double_support * step_s
-        self._enter = complex(body.heel_m, width_m / 2)
-        leave = complex(body.toe_m, width_m / 2)
-        self._start = leave.conjugate() - step_m
-        self._crossing = (self._enter - self._start) / crossing_s
-        self._roll = (leave - self._enter) / (step_s - crossing_s)
-
-        jump = (self._crossing - self._roll) / w
-        grown, late = math.exp(-w * step_s), math.exp(-w * crossing_s)
-        forward = jump.real * (1 - late) / (1 - grown)
-        lateral = (jump.imag * late - (self._crossing + self._roll).imag / w) / (1 + grown)
-        self.step_s = step_s
-        self._end_offset = complex(forward, lateral)
-        self._crossed_offset = self._end_offset * math.exp(w * (crossing_s - step_s)) - jump
-
-    def at(self, time_s: float) -> tuple[complex, complex]:
-        """CoP and XCoM `time_s` after landing, in [0, step_s]."""
-        if time_s < self._crossing_s:
-            cop, rate = self._start + self._crossing * time_s, self._crossing
-            offset = self._crossed_offset * math.exp(self._w * (time_s - self._crossing_s))
-        else:
-            cop, rate = self._enter + self._roll * (time_s - self._crossing_s), self._roll
-            offset = self._end_offset * math.exp(self._w * (time_s - self.step_s))
-        return cop, cop + rate / self._w + offset
 
 
 @dataclass
@@ -279,8 +241,6 @@ class Wearer:
         self._plan: Plan | None = None
         self._plan_age_s = 0.0
         self._origin_m = 0j  # of the plan's frame, in the world
-        self._acceleration_m_s2 = 0j  # of the planned CoM
-        self._midline_m = 0j  # of the running step, at the stance foot
         self._leading = LEFT  # the foot that landed last
         self._since_landing_s = math.inf  # since standing: inf
         self._recovery_shift_m = 0j  # of the landing of the running swing
@@ -332,7 +292,6 @@ class Wearer:
 
         plan_at: the plan until the next tick, of which this wearer needs nothing.
         """
-        before, interval_s = self._plan, self._plan_age_s
         self._plan, self._plan_age_s = plan, 0.0
         if plan is None or self.fallen:
             return
@@ -344,12 +303,6 @@ class Wearer:
         elif not self.feet[plan.support].contact:
             self._land(plan.support)
         self._hold(plan)
-        gained = plan.velocity_m_s - before.velocity_m_s if before and interval_s else 0j
-        self._acceleration_m_s2 = gained / interval_s if gained else 0j
-        if not plan.both_feet_stand:
-            self._steady = SteadyStep(
-                self.body, plan.step_length_m, 2 * abs(plan.half_width_m), self._step_s(plan)
-            )
 
     def _hold(self, plan: Plan) -> None:
         """The plan's frame against the foot that it steps on or, once that has landed, steps to."""
@@ -358,15 +311,6 @@ class Wearer:
         if self._since_landing_s <= 0 and self._leading == swing:
             foot, place = swing, plan.landing_m
         self._origin_m = self.feet[foot].position_m - place
-        self._midline_m = self._origin_m + plan.feet_m[stance] + 1j * plan.half_width_m
-
-    def _step_s(self, plan: Plan) -> float:
-        """Duration of a whole step: at the present speed; on the first swing, at its landing."""
-        speed_m_s = plan.speed_m_s
-        if self._is_first_swing and plan.landing_in_s > STEP_S:
-            way_m = plan.step_length_m / 2 - plan.com_m.real
-            speed_m_s = 2 * way_m / plan.landing_in_s - speed_m_s
-        return plan.step_length_m / max(speed_m_s, SPEED_MIN_M_S)
 
     @property
     def _is_first_swing(self) -> bool:
@@ -383,66 +327,20 @@ class Wearer:
         self._since_landing_s += STEP_S
         if self._plan_age_s > self.PLAN_MAX_AGE_S:
             self._plan = None
-        _, xcom = self._reference(self._plan_age_s)
-        cop, _ = self._reference(self._plan_age_s + self.body.cop_lag_s)
-        self.xcom_error_m = self.xcom_m - xcom
+        cop = self._reference(self._plan_age_s + self.body.cop_lag_s).cop_m
+        self.xcom_error_m = self.xcom_m - self._reference(self._plan_age_s).xcom_m
         self._move_feet()
         self._move_cop(cop + (1 + self.body.cop_gain) * self.xcom_error_m)
         self._move_com()
         self._carry()
 
-    def _reference(self, age: float) -> tuple[complex, complex]:
-        """CoP and XCoM to be at, in the world: midway between the feet if there is no plan."""
+    def _reference(self, age: float) -> Reference:
+        """What to balance by, in the world: midway between the feet if there is no plan."""
         if self._plan is None:
             middle = (self.feet[LEFT].position_m + self.feet[RIGHT].position_m) / 2
-            return middle, middle
-        if self._plan.both_feet_stand:
-            return self._planned_reference(self._plan, age)
-        if self._is_first_swing or self._plan.lands_beside:
-            return self._half_step_reference(self._plan, age)
-        return self._steady_reference(self._plan, age)
-
-    def _planned_reference(self, plan: Plan, age: float) -> tuple[complex, complex]:
-        """Those of the planned CoM."""
-        w = self.body.natural_frequency_rad_s
-        gained = self._acceleration_m_s2 * age
-        com = self._origin_m + plan.com_m + (plan.velocity_m_s + gained / 2) * age
-        return com - self._acceleration_m_s2 / w**2, com + (plan.velocity_m_s + gained) / w
-
-    def _half_step_reference(self, plan: Plan, age: float) -> tuple[complex, complex]:
-        """Those of the plan forward; across, those of a fall about the inner side of the foot.
-
-        The fall of a first swing ends where a steady step begins, that of a last one where the plan
-        rests. A last swing keeps the XCoM over the foot: from behind it, there is no way on.
-        """
-        cop, xcom = self._planned_reference(plan, age)
-        foot = self.feet[plan.support].position_m
-        outward = math.copysign(1.0, (self._midline_m - foot).imag)
-        inner_y = foot.imag + outward * self.body.inner_m
-        cop_x, xcom_x = cop.real, xcom.real
-        half_width = abs((self._midline_m - foot).imag)
-        if plan.lands_beside:
-            end_y = foot.imag + outward * half_width * REST_SHARE
-            rearmost_x = foot.real - self.body.foot_half_length_m / 2
-            if xcom_x < rearmost_x:
-                cop_x = xcom_x = rearmost_x
-        else:
-            end_y = self._midline_m.imag + outward * self._steady.at(0.0)[1].imag
-        left_s = max(plan.landing_in_s - age, 0.0)
-        grown = math.exp(-self.body.natural_frequency_rad_s * left_s)
-        return complex(cop_x, inner_y), complex(xcom_x, inner_y + (end_y - inner_y) * grown)
-
-    def _steady_reference(self, plan: Plan, age: float) -> tuple[complex, complex]:
-        """Those of the steady walk at the plan's place in the step, and what its speed gains."""
-        w = self.body.natural_frequency_rad_s
-        acceleration = self._acceleration_m_s2.real
-        way_m = plan.com_m.real + (plan.speed_m_s + acceleration * age / 2) * age
-        ahead, progress = divmod(max(way_m / plan.step_length_m + 0.5, 0.0), 1.0)
-        cop, xcom = self._steady.at(progress * self._steady.step_s)
-        if plan.support ^ (int(ahead) & 1) == RIGHT:
-            cop, xcom = cop.conjugate(), xcom.conjugate()
-        stance = self._midline_m + ahead * plan.step_length_m
-        return stance + cop - acceleration / w**2, stance + xcom + acceleration * age / w
+            return Reference(middle, middle)
+        planned = self._plan.reference(age)
+        return Reference(self._origin_m + planned.cop_m, self._origin_m + planned.xcom_m)
 
     def _move_feet(self) -> None:
         plan = self._plan

@@ -53,6 +53,7 @@ class Device:
     def __init__(self, config: Any) -> None:
         """config: a saddle_config_t of saddlewalk.config."""
         lib = library()
+        self.core = core.Core(config)  # for what a plan says of the time after it
         self._context = ffi().new("saddle_context_t *")
         self._inbox = ffi().new("saddle_inbox_t *")
         self._output = ffi().new("saddle_output_t *")
@@ -94,7 +95,7 @@ class Device:
         """The plan so long after the last tick, as a controller of the joints has it."""
         time_us = self._tick_us + round(since_s * 1e6)
         library().saddle_plan_at(self._context, time_us, self._plan)
-        return planned(self._plan)
+        return planned(self._plan[0], self.core)
 
     def _publish_health(self) -> None:
         health, inbox, receiver = self._health, self._inbox, self._inbox.receiver
@@ -142,7 +143,7 @@ def run(
             history.append(device.tick(round(clock_s * 1e6)))
             checker.begin_s = max(occurrence.begin_s, _onset_s(occurrence, line))
             checker.tick(history[-1], walk_s, clock_s)
-            wearer.follow(plan_of(history[-1]), device.plan_at)
+            wearer.follow(plan_of(history[-1], device.core), device.plan_at)
         for _ in range(STEPS_A_TICK):
             wearer.step()
     return outcome_of(fault, False, checker, wearer), history

@@ -187,6 +187,7 @@ def run_live(scenario: Scenario, index: int, number: int, seed: int, config: Any
         exoskeleton = Exoskeleton(
             faulty_bus,
             wearer,
+            config,
             schedule_of([(0.0, speed_m_s)], HEEL_STRIKE_RAD),
             FaultyLcm(open_lcm(url), commands, observer.now_s),
             [observer],

@@ -75,7 +75,6 @@ class Body:
     legs: tuple[Leg, Leg]
     knee_sign: float  # of the joint angle of a bent knee
     sole_half_width_m: float  # within which the CoP is kept
-    inner_m: float  # the CoP of a first or last swing, from the middle to the other foot
 
     @property
     def mass_kg(self) -> float:
@@ -98,7 +97,7 @@ def winter(height_m: float, mass_kg: float) -> Body:
     legs = tuple(_add_leg(pelvis, name, height_m, mass_kg) for name in SIDES)
     torques = {f"{side}_{name}": torque for side in SIDES for name, (*_, torque) in JOINTS.items()}
     model = compiled(spec, torques)
-    return Body("winter", model, "pelvis", (legs[0], legs[1]), 1.0, 0.030, 0.020)
+    return Body("winter", model, "pelvis", (legs[0], legs[1]), 1.0, 0.030)
 
 
 def _add_leg(pelvis: Any, side: str, height_m: float, mass_kg: float) -> Leg:

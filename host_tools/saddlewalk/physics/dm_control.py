@@ -66,7 +66,7 @@ def dm_control() -> Body:
             geom.contype = geom.conaffinity = 0
     legs = tuple(_leg(side) for side in SIDES)
     model = compiled(spec, torques)
-    return Body("dm_control", model, "pelvis", (legs[0], legs[1]), -1.0, 0.025, 0.015)
+    return Body("dm_control", model, "pelvis", (legs[0], legs[1]), -1.0, 0.025)
 
 
 @functools.cache

@@ -42,7 +42,6 @@ class PhysicalWearer(emulation.Wearer):
         pendulum = replace(
             emulation.Body.of(config),
             foot_half_width_m=plant.body.sole_half_width_m,
-            inner_m=plant.body.inner_m,
         )
         noise = replace(noise or Noise(), cop_m=0.0)
         super().__init__(pendulum, noise, pushes, seed, takes_recovery_step, right_ahead_m)
@@ -90,9 +89,8 @@ class PhysicalWearer(emulation.Wearer):
         self._plan_age_s += STEP_S
         self._since_tick_s += STEP_S
         self._since_landing_s += STEP_S
-        _, xcom = self._reference(self._plan_age_s)
-        cop, _ = self._reference(self._plan_age_s + self.body.cop_lag_s)
-        self.xcom_error_m = self.xcom_m - xcom
+        cop = self._reference(self._plan_age_s + self.body.cop_lag_s).cop_m
+        self.xcom_error_m = self.xcom_m - self._reference(self._plan_age_s).xcom_m
         self._step_feet()
         self._move_cop(cop + (1 + self.body.cop_gain) * self.xcom_error_m)
         if (self._steps - 1) % CONTROL_STEPS == 0:

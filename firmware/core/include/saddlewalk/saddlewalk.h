@@ -61,6 +61,13 @@ saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *c
 saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
                                saddle_plan_t *plan);
 
+/** The reference after_s in [0, 0.5] after a valid plan, in that plan's frame: for a controller behind a
+ *  bus, which has the last tick's plan alone. The plan itself holds the reference of its own time. The
+ *  speed is taken to go on changing as it does. SADDLE_ERROR_TIME, and zeros, for another time or a
+ *  plan that is not valid. Depends on nothing of the context but its configuration. */
+saddle_status_t saddle_reference_after(const saddle_context_t *context, const saddle_plan_t *plan,
+                                       float after_s, saddle_reference_t *reference);
+
 /** The scores of a planned posture, in the frame of the plan: what the paper tabulates, and what a
  *  measured score is read against. Of a plan that is not valid nothing is scored. */
 saddle_status_t saddle_score_plan(const saddle_context_t *context, const saddle_plan_t *plan,

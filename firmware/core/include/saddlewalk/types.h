@@ -68,6 +68,9 @@ typedef struct {
     float step_width_factor_left; /**< left foot to the walking line; 1: symmetric, [E3] */
     float step_width_factor_right;
     float swing_clearance_m;    /**< height of the swing foot at mid-swing, [E10] */
+    float double_support_share; /**< of a step, after its landing: both feet carry, [E39] */
+    float cop_enter;            /**< where the CoP enters a foot, of cop_range_m, */
+    float cop_leave;            /**< and where it leaves it, [E39] */
     float tick_max_s;           /**< the plan advances by no more than this in one tick */
     float command_max_age_s;    /**< an older command times out: the walk stops */
     float lost_inputs_stop;     /**< 1: lost inputs stop the walk; 0: for recordings, or a
@@ -214,6 +217,16 @@ typedef enum {
 /** Longest time that is predicted; what never comes is said to come then. */
 #define SADDLE_TIME_MAX_S 1000.0f
 
+/** The pendulum that takes the planned steps: what a CoP within the feet can make of the plan. To stay
+ *  on it, a wearer whose XCoM is off by e puts the CoP at cop_m + (1 + gain) e. */
+typedef struct {
+    saddle_vec2_t com_m;
+    saddle_vec2_t xcom_m; /**< rate: natural frequency times its distance from cop_m, [E39];
+                               that of com_m: times its distance from xcom_m */
+    saddle_vec2_t cop_m;  /**< of both feet together, within the soles */
+    float load[2];        /**< share of the weight that each foot carries; their sum is 1 */
+} saddle_reference_t;
+
 /** The plan at one instant. x is measured from the CoP of the planned stance foot, which lies at
  *  origin_x_nm from the first stance foot; y from the walking line; z from the ground. */
 typedef struct {
@@ -226,6 +239,7 @@ typedef struct {
     float theta_rad;       /**< gait phase within the stride, [0, 2 pi), [E8] */
     int64_t origin_x_nm;   /**< walked distance to the stance foot; integer, so it never drifts */
     float speed_m_s, step_length_m, step_width_m; /**< of the running quarter */
+    float acceleration_m_s2;                      /**< rate of change of that speed */
     saddle_vec3_t com_m, com_velocity_m_s;
     saddle_vec3_t foot_m[2];            /**< CoPs */
     float foot_pitch_rad[2];            /**< sole to ground, positive heel up */
@@ -238,6 +252,8 @@ typedef struct {
     float time_to_heel_strike_s;        /**< next heel strike, [E12] */
     float time_to_toe_off_s;            /**< next change of support: the swing CoP arrives */
     saddle_vec2_t landing_m;            /**< where the swing CoP arrives */
+    saddle_vec2_t last_step_m;          /**< from the stance foot before this one to this one */
+    saddle_reference_t reference;       /**< to balance by, [E39] */
 } saddle_plan_t;
 
 /* ---- scores -------------------------------------------------------------------------------- */

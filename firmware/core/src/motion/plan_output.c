@@ -5,6 +5,7 @@
 #include "math/vec2.h"
 #include "model/gait_model.h"
 #include "motion/gait_cycle.h"
+#include "motion/reference.h"
 #include "motion/speed_profile.h"
 #include "motion/standing.h"
 
@@ -98,6 +99,7 @@ static void write_no_step(const saddle_model_t *model, saddle_plan_t *plan)
     plan->phase = 0;
     plan->theta_rad = 0.0f;
     plan->speed_m_s = 0.0f;
+    plan->acceleration_m_s2 = 0.0f;
     plan->step_length_m = 0.0f;
     plan->step_width_m = 0.0f;
     plan->foot_pitch_rad[SADDLE_LEFT] = 0.0f;
@@ -160,6 +162,7 @@ static uint32_t write_walking(const saddle_planner_t *planner, const saddle_mode
     saddle_cycle_pose(cycle, model, &pose);
     const float theta_rad = SADDLE_HALF_PI * ((float)cycle->phase + pose.progress);
     plan->speed_m_s = cycle->profile.speed_m_s;
+    plan->acceleration_m_s2 = saddle_profile_acceleration_m_s2(&cycle->profile);
     plan->step_length_m = 2.0f * cycle->quarter.length_m;
     plan->step_width_m = cycle->quarter.width_m;
     plan->phase = cycle->phase;
@@ -193,11 +196,13 @@ uint32_t saddle_plan_write(const saddle_planner_t *planner, const saddle_model_t
     plan->step_count = cycle->step_count;
     plan->stride_count = cycle->stride_count;
     plan->origin_x_nm = cycle->origin_x_nm;
+    plan->last_step_m = cycle->last_step_m;
     if (saddle_stands(planner)) {
         write_standing(planner, model, plan);
     } else {
         limits = write_walking(planner, model, plan);
     }
     write_events(planner, model, plan);
+    saddle_reference(model, plan, 0.0f, &plan->reference);
     return limits;
 }

@@ -50,6 +50,14 @@ saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t 
            saddle_position_from_m(0.5f * change_m_s * change_time_s);
 }
 
+float saddle_profile_acceleration_m_s2(const saddle_speed_profile_t *profile)
+{
+    if (profile->speed == profile->target) {
+        return 0.0f;
+    }
+    return profile->target < profile->speed ? -profile->rate_m_s2 : profile->rate_m_s2;
+}
+
 bool saddle_can_brake(float speed_m_s, float rate_m_s2, float distance_m)
 {
     return speed_m_s * speed_m_s <= 2.0f * rate_m_s2 * distance_m;

@@ -13,6 +13,9 @@ void saddle_profile_aim(saddle_speed_profile_t *profile, float speed_m_s, float 
 /** Advance by dt_us; returns the distance. Exact at constant speed, else to about 1e-10 m. */
 saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t dt_us);
 
+/** The rate at which the speed changes now, signed; 0 at the target. */
+float saddle_profile_acceleration_m_s2(const saddle_speed_profile_t *profile);
+
 /** The speed after a further distance_m >= 0. */
 saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile, float distance_m);
 

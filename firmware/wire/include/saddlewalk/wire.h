@@ -44,7 +44,7 @@ extern "C" {
 /** Frames of one output: the plan (10), the scores (5), the verdict (2), the margin and the learned
  *  walk (4), the process (3), and HEALTH as the last. SESSION is apart: it is sent only while codes
  *  are demanded. */
-#define SADDLE_WIRE_OUTPUT_FRAMES 25u
+#define SADDLE_WIRE_OUTPUT_FRAMES 29u
 
 /** Frames of one measurement: CoM, left foot, right foot. */
 #define SADDLE_WIRE_MEASURED_FRAMES 3u

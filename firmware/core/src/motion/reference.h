@@ -1,0 +1,14 @@
+/** The motion of a pendulum that takes the planned steps: what a CoP within the feet can make of the
+ *  plan. It follows from a plan alone, so a controller that has only the last one can go on from it. */
+#ifndef SADDLEWALK_REFERENCE_H
+#define SADDLEWALK_REFERENCE_H
+
+#include <saddlewalk/private/context.h>
+
+/** The reference after_s >= 0 after a valid plan, in the plan's frame: the speed changes on as it does
+ *  now, and a landing begins a step like the one before. [E39] [E40] in a step, [E41] in a first or
+ *  last swing, [E42] while both feet stand. */
+void saddle_reference(const saddle_model_t *model, const saddle_plan_t *plan, float after_s,
+                      saddle_reference_t *reference);
+
+#endif
