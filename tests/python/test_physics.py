@@ -3,6 +3,7 @@
 import csv
 import importlib.util
 import json
+import math
 
 import numpy as np
 import pytest
@@ -163,6 +164,7 @@ def test_the_demo_walks_a_body_over_the_wire(tmp_path, capsys):
     options = ["--can", private_udp(), "--lcm", own_lcm(), "--out", str(tmp_path / "demo")]
     walk = ["--duration", "3.2", "--speed", "0.8", "--plant", "mujoco"]
     assert main(["demo", *options, *walk]) == 0
+    assert (tmp_path / "demo/body.png").stat().st_size > 20_000
     shown = capsys.readouterr().out
     assert "ok   the wearer stayed up" in shown and "clock: lockstep" in shown
 
@@ -225,3 +227,45 @@ def test_late_torques_make_a_body_fall(capsys):
     options = ["--speeds", "0.8", "--distance", "2", "--repeats", "1", "--jobs", "1"]
     assert main(["endure", *options, "--torque-delays", "60"]) == 1
     assert "1 falls, 0 stand at the end" in capsys.readouterr().out
+
+
+@needs_mujoco
+def test_outlines_are_those_of_the_limbs():
+    from saddlewalk.physics.poses import Pose, side_view
+
+    _, wearer = wearer_with()
+    model = wearer.plant.model
+    seen = list(side_view(model, Pose(0.0, wearer.plant.data.qpos)))
+    limbs = [shape for shape in seen if np.ptp(shape.points_m[:, 1]) > 0.1]
+    assert {shape.side for shape in seen} == {"left", "right", ""}
+    # A thigh's capsule of 0.245 by 1.79 m and two caps of 0.06 m, whatever its tilt.
+    assert max(
+        math.hypot(*np.ptp(shape.points_m, axis=0)) for shape in limbs if shape.side
+    ) == pytest.approx(0.245 * 1.79 + 0.12, abs=0.06)
+    lowest_m = min(shape.points_m[:, 1].min() for shape in seen)
+    assert lowest_m == pytest.approx(0.0, abs=0.002)
+    top_m = wearer.plant.data.qpos[2] + 0.288 * 1.79 + 0.22 + 0.10  # hips, trunk, head
+    assert max(shape.points_m[:, 1].max() for shape in seen) == pytest.approx(top_m, abs=0.005)
+
+
+@needs_mujoco
+def test_a_film_shows_the_body_or_names_what_is_missing(tmp_path):
+    from PIL import Image
+
+    from saddlewalk.errors import UserError
+    from saddlewalk.physics.film import Camera, film
+    from saddlewalk.physics.poses import Pose
+
+    _, wearer = wearer_with()
+    model, qpos = wearer.plant.model, wearer.plant.data.qpos
+    try:
+        camera = Camera(model)
+    except UserError as error:
+        assert "libegl1" in str(error)
+        pytest.skip("no EGL: as root, apt-get install -y libegl1 libgl1-mesa-dri")
+    poses = [Pose(0.0, qpos.copy()), Pose(0.04, qpos + np.eye(len(qpos))[2] * 0.3)]
+    film(tmp_path / "body.gif", camera, poses)
+    camera.close()
+    with Image.open(tmp_path / "body.gif") as pictures:
+        assert pictures.n_frames == 2 and pictures.info["duration"] == 40
+        assert len(pictures.getcolors(1000) or range(99)) > 10

@@ -21,7 +21,7 @@ from saddlewalk.commands.emulate import (
 from saddlewalk.commands.view import add_view_options
 from saddlewalk.config import host_arguments, load_config
 from saddlewalk.errors import UserError
-from saddlewalk.logs.run_files import CAN_LOG, LCM_LOG, PICTURE, TABLE, run_names
+from saddlewalk.logs.run_files import CAN_LOG, FILM, LCM_LOG, PICTURE, STRIP, TABLE, run_names
 from saddlewalk.outputs import OutputFolder, add_input, add_output
 from saddlewalk.printable import printable
 
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from saddlewalk.emulation.wearer import Wearer
     from saddlewalk.logs.recorder import Recorder
     from saddlewalk.logs.soundness import Check
+    from saddlewalk.physics.film import Camera
     from saddlewalk.view.beside import PageBeside
 
 VIEWED_S = 600.0
@@ -74,6 +75,11 @@ def add_parser(subparsers: Any) -> None:
         pace=", ".join(f"{speed_m_s:g} m/s from {from_s:g} s" for from_s, speed_m_s in SPEEDS),
         duration_s=DURATION_S,
         push=f"{PUSH_N_S_KG:.3f} N s/kg to the left at {PUSH_TIME_S} s",
+    )
+    parser.add_argument(
+        "--film",
+        action="store_true",
+        help=f"of --plant mujoco: draw the whole walk as {FILM} too, without a display",
     )
     add_input(
         parser,
@@ -130,6 +136,7 @@ def _walk(
     key = read_key(args.command_key) if args.command_key else None
     by_can = args.firmware == EMULATED
     wearer = wearer_of(args, plant, config, Noise())
+    camera = _camera(args, plant, wearer)
     speeds = speeds_of(args, VIEWED_SPEEDS if args.view else SPEEDS)
     schedule = schedule_of(speeds, math.radians(args.hs_angle))
     firmware = _host if args.firmware == HOST else _controller
@@ -154,7 +161,38 @@ def _walk(
         picture = recorder.csv_path.with_name(PICTURE)
         fell_s = wearer.fell_at_s if wearer.fallen else None
         draw_walk(recorder.csv_path, picture, wearer.pushes, config, fell_s)
+        if plant.is_mujoco:
+            _draw_body(recorder.csv_path, wearer, config, camera)
     return _finish(args.out, wearer, exoskeleton, recorder, checks)
+
+
+def _camera(args: argparse.Namespace, plant: "PlantChoice", wearer: "Wearer") -> "Camera | None":
+    """That of --film. A body records its poses from now on."""
+    if not plant.is_mujoco:
+        if args.film:
+            raise UserError("--film: only with --plant mujoco")
+        return None
+    from saddlewalk.physics.wearer import PhysicalWearer
+
+    assert isinstance(wearer, PhysicalWearer)
+    wearer.poses = []
+    if not args.film:
+        return None
+    from saddlewalk.physics.film import Camera
+
+    return Camera(wearer.plant.model)
+
+
+def _draw_body(table: Path, wearer: Any, config: Any, camera: "Camera | None") -> None:
+    """The strip, and the film of the part that it shows."""
+    from saddlewalk.physics.picture import draw_strip
+
+    draw_strip(table, table.with_name(STRIP), wearer, config)
+    if camera:
+        from saddlewalk.physics.film import film
+
+        print("drawing the film", flush=True)
+        film(table.with_name(FILM), camera, wearer.poses)
 
 
 def _page(args: argparse.Namespace) -> "contextlib.AbstractContextManager[PageBeside | None]":
@@ -317,8 +355,9 @@ def _finish(
         print(f"timing: {exoskeleton.punctuality.words()}")
     for good, words in checks:
         print(f"  {'ok ' if good else 'BAD'}  {words}")
-    for path in (folder / name for name in (PICTURE, TABLE, CAN_LOG, LCM_LOG)):
-        print(f"  {printable(path)}  {path.stat().st_size / 1024:.0f} KiB")
+    for path in (folder / name for name in (PICTURE, STRIP, FILM, TABLE, CAN_LOG, LCM_LOG)):
+        if path.exists():
+            print(f"  {printable(path)}  {path.stat().st_size / 1024:.0f} KiB")
     return 0 if all(good for good, _ in checks) else 1
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 from saddlewalk.paths import CHECKOUT
 
 LCM_LOG, CAN_LOG, TABLE, PICTURE = "walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"
+STRIP, FILM = "body.png", "body.gif"  # of a body in MuJoCo
 TABLE_FORMATS = ("csv", "parquet")
 
 
@@ -31,4 +32,4 @@ def run_names() -> tuple[str, ...]:
     made += [
         str(exported(log, form) / name) for form in TABLE_FORMATS for name in table_names(form)
     ]
-    return (LCM_LOG, CAN_LOG, TABLE, PICTURE, *made)
+    return (LCM_LOG, CAN_LOG, TABLE, PICTURE, STRIP, FILM, *made)

@@ -17,9 +17,11 @@ from saddlewalk.emulation.wearer import STEP_S, Measurement, Noise, Plan, PlanAt
 from saddlewalk.physics.gains import Gains
 from saddlewalk.physics.inverse_dynamics import Contact, FootTarget, InverseDynamics, Targets
 from saddlewalk.physics.plant import Plant
+from saddlewalk.physics.poses import Pose
 from saddlewalk.physics.swing import PlannedSwing, Swing
 
 CONTROL_STEPS = 2  # of physics, per quadratic programme
+POSE_STEPS = 40  # from a recorded pose to the next
 CONTACT_N = 30.0  # load from which a sole's switch closes
 SIDES = (LEFT, RIGHT)
 
@@ -50,6 +52,7 @@ class PhysicalWearer(emulation.Wearer):
         self._torques = np.zeros(plant.model.nu)
         left_m = 1j * config.step_width_slow_m / 2 - right_ahead_m / 2
         plant.stand((left_m, -left_m), np.array([0.0, 0.0, pendulum.pendulum_m]))
+        self.poses: list[Pose] | None = None  # a list is filled
         self._plan_at: PlanAt | None = None
         self._since_tick_s = 0.0
         self._tick_plan: Plan | None = None
@@ -99,6 +102,8 @@ class PhysicalWearer(emulation.Wearer):
         self.plant.step(self._torques, self._push())
         self._sense()
         self._seen.append(self._exact_now())
+        if self.poses is not None and self._steps % POSE_STEPS == 0:
+            self.poses.append(Pose(self.time_s, self.plant.data.qpos.copy()))
 
     def _renew_plan(self) -> None:
         """The plan of this step of physics; where to recover to is only known at a tick."""

@@ -92,16 +92,16 @@ def figure_of(
     balance, level, whole, above, speed, height, scores, margins = figure.subplots(
         8, 1, height_ratios=(1.0, 0.6, 0.6, 1.7, 0.8, 0.8, 0.9, 0.9)
     )
-    shown = _shown(walk["t_s"], pushes, fell_s)
-    closely = {name: column[shown] for name, column in walk.items()}
+    there = shown(walk["t_s"], pushes, fell_s)
+    closely = {name: column[there] for name, column in walk.items()}
     fate = "" if fell_s is None else f" and falls at {fell_s:.2f} s"
     figure.suptitle(f"A walk: the plan, and the wearer who follows it{fate}")
     draw_balance(balance, walk["t_s"], walk["margin"], walk["caution_below"])
     _name_lowest(balance, walk)
     draw_level(level, walk)
-    _mark(level, pushes, fell_s)
+    mark(level, pushes, fell_s)
     _draw_whole(whole, walk, closely)
-    _draw_above(above, closely, pushes, config)
+    draw_above(above, closely, pushes, config)
     if fell_s is not None:
         _draw_fall((whole, above), walk)
     _draw_lines(
@@ -115,7 +115,7 @@ def figure_of(
     margins.set(ylabel="margin in the base\nof support (m)", xlabel="time (s)")
     margins.set_ylim(bottom=max(margins.get_ylim()[0], MARGIN_SHOWN_M))
     for axes in (balance, speed, height, scores, margins):
-        _mark(axes, pushes, fell_s)
+        mark(axes, pushes, fell_s)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     return figure
 
@@ -133,20 +133,21 @@ def _draw_whole(axes: Axes, walk: Columns, closely: Columns) -> None:
     axes.set_aspect("equal")
     axes.set(ylabel="to the left (m)")
     axes.set_xlim(walk["true_com_x_m"].min() - 0.3, walk["true_com_x_m"].max() + 0.3)
-    axes.set_ylim(*_lateral_limits(walk))
+    axes.set_ylim(*lateral_limits(walk))
 
 
-def _shown(time_s: np.ndarray, pushes: Sequence[Push], fell_s: float | None) -> np.ndarray:
+def shown(time_s: np.ndarray, pushes: Sequence[Push], fell_s: float | None) -> np.ndarray:
     """About the first push, or the middle, and to the fall if there was one."""
     centre_s = pushes[0].time_s if pushes else (time_s[-1] + BEFORE_S - AFTER_S) / 2
     from_s, to_s = centre_s - BEFORE_S, centre_s + AFTER_S
     if fell_s is not None:
         from_s, to_s = min(from_s, fell_s - AFTER_S), max(to_s, fell_s + LYING_S)
-    shown = (time_s >= from_s) & (time_s <= to_s)
-    return shown if shown.any() else np.ones_like(shown)
+    there = (time_s >= from_s) & (time_s <= to_s)
+    return there if there.any() else np.ones_like(there)
 
 
-def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], config: Any) -> None:
+def draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], config: Any) -> None:
+    """Base of support and footprints, planned and true, and the pushes."""
     for index in range(len(walk["t_s"])):
         bos_m = _bos(walk, index, config)
         axes.add_patch(Polygon(bos_m, color=SKY, alpha=0.10, lw=0))
@@ -162,7 +163,7 @@ def _draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], config: Any) 
     axes.set_aspect("equal")
     axes.set(xlabel="forward (m)", ylabel="to the left (m)")
     axes.set_xlim(walk["true_com_x_m"].min() - 0.2, walk["true_com_x_m"].max() + 0.2)
-    axes.set_ylim(*_lateral_limits(walk))
+    axes.set_ylim(*lateral_limits(walk))
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False)
 
 
@@ -198,7 +199,7 @@ def _draw_fall(views: Sequence[Axes], walk: Columns) -> None:
         axes.annotate("fell", at, (8, 8), textcoords="offset points", weight="bold")
 
 
-def _lateral_limits(walk: Columns) -> tuple[float, float]:
+def lateral_limits(walk: Columns) -> tuple[float, float]:
     """With room for the feet, and for a CoM that falls away from them."""
     names = ("true_com_y_m", *(f"true_{side}_y_m" for side, _ in FEET))
     lateral = np.concatenate([walk[name] for name in names])
@@ -299,7 +300,8 @@ def _spans(time_s: np.ndarray, there: np.ndarray) -> list[tuple[float, float]]:
     return [(time_s[a], time_s[min(b, last)]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def _mark(axes: Axes, pushes: Sequence[Push], fell_s: float | None) -> None:
+def mark(axes: Axes, pushes: Sequence[Push], fell_s: float | None) -> None:
+    """Pushes and a fall, over time."""
     for push in pushes:
         axes.axvline(push.time_s, color=PINK, lw=2.5, zorder=1)
     if fell_s is not None:
