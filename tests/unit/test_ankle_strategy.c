@@ -28,7 +28,9 @@ static saddle_quarter_t quarter_at(float speed)
 static saddle_transition_t transition_at(float speed, double heel_strike_deg)
 {
     const saddle_quarter_t quarter = quarter_at(speed);
-    return saddle_transition(model_of(&config), &quarter, (float)(heel_strike_deg * DEGREE));
+    const saddle_heel_strike_t strike =
+        saddle_heel_strike(model_of(&config), (float)(heel_strike_deg * DEGREE));
+    return saddle_transition(model_of(&config), &quarter, strike);
 }
 
 static void test_toe_off_angles_of_the_paper_s_speeds(void)
@@ -48,8 +50,8 @@ static void test_toe_off_angles_of_the_paper_s_speeds(void)
 static void test_heel_strikes_before_the_saddle(void)
 {
     const double lead = 0.1 * (1.0 - cos(15.0 * DEGREE));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-8, lead, transition_at(1.2f, 15.0).heel_strike_lead_m);
-    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, transition_at(1.2f, 0.0).heel_strike_lead_m);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, lead, transition_at(1.2f, 15.0).strike.lead_m);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, transition_at(1.2f, 0.0).strike.lead_m);
 }
 
 static void test_toe_off_beyond_the_geometry_is_limited_and_said(void)
@@ -79,7 +81,7 @@ static double leg_length(const saddle_transition_t *transition, double t, bool b
 {
     const double rise = erf(t / 0.11);
     const double angle = before ? (double)transition->toe_off_rad * (1.0 + rise)
-                                : (double)transition->heel_strike_rad * (1.0 - rise);
+                                : (double)transition->strike.angle_rad * (1.0 - rise);
     return 0.57 * 1.79 + 2.0 * 0.1 * sin(0.5 * angle);
 }
 

@@ -280,12 +280,13 @@ static void test_heel_strike_angle_waits_for_the_heel_strike_after_the_next(void
 {
     bool arrived;
     begin(0, 1.0f, true);
-    cycle.next_heel_strike_rad = 0.2f;
+    cycle.next_strike = saddle_heel_strike(model_of(&config), 0.2f);
+    cycle.transition.strike = cycle.next_strike;
     while (cycle.phase == 0u) {
         advance(1000, &arrived);
     }
-    ASSERT_SAME_FLOAT(0.2f, cycle.heel_strike_rad);
-    ASSERT_SAME_FLOAT(0.1f, cycle.next_heel_strike_rad);
+    ASSERT_SAME_FLOAT(0.2f, cycle.transition.strike.angle_rad);
+    ASSERT_SAME_FLOAT(0.1f, cycle.next_strike.angle_rad);
 }
 
 /* The new stance foot keeps its misplaced line; the next one is back beside the walking line. */

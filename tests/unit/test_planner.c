@@ -888,8 +888,8 @@ static void test_heel_strike_angle_is_limited(void)
         for (int k = 0; k < 25; k++) { /* beyond the heel strike after the next */
             tick(80000);
         }
-        ASSERT_SAME_FLOAT(table[i].planned, planner.cycle.next_heel_strike_rad);
-        ASSERT_SAME_FLOAT(table[i].planned, planner.cycle.heel_strike_rad);
+        ASSERT_SAME_FLOAT(table[i].planned, planner.cycle.next_strike.angle_rad);
+        ASSERT_SAME_FLOAT(table[i].planned, planner.cycle.transition.strike.angle_rad);
     }
 }
 

@@ -23,22 +23,21 @@ static float toe_off_elongation_m(const saddle_model_t *model, const saddle_quar
 }
 
 /* [E12] */
-float saddle_heel_strike_lead_m(const saddle_model_t *model, float heel_strike_rad)
+saddle_heel_strike_t saddle_heel_strike(const saddle_model_t *model, float angle_rad)
 {
-    return model->config.cop_range_m * (1.0f - saddle_cos(heel_strike_rad));
+    const float lead_m = model->config.cop_range_m * (1.0f - saddle_cos(angle_rad));
+    return (saddle_heel_strike_t){angle_rad, lead_m};
 }
 
 saddle_transition_t saddle_transition(const saddle_model_t *model, const saddle_quarter_t *quarter,
-                                      float heel_strike_rad)
+                                      saddle_heel_strike_t strike)
 {
-    const float lead_m = saddle_heel_strike_lead_m(model, heel_strike_rad);
     const float sine =
-        toe_off_elongation_m(model, quarter, lead_m) / (2.0f * model->config.cop_range_m);
+        toe_off_elongation_m(model, quarter, strike.lead_m) / (2.0f * model->config.cop_range_m);
     const float limited = saddle_clamp(sine, 0.0f, 1.0f);
     saddle_transition_t transition;
-    transition.heel_strike_rad = heel_strike_rad;
+    transition.strike = strike;
     transition.toe_off_rad = 2.0f * saddle_asin(limited);
-    transition.heel_strike_lead_m = lead_m;
     transition.toe_off_limited = sine < 0.0f || sine > 1.0f;
     return transition;
 }
@@ -64,7 +63,7 @@ saddle_ankle_angles_t saddle_ankle_angles(const saddle_model_t *model,
         const float toe_off_rad = transition->toe_off_rad * (1.0f + progress);
         angles.limited = toe_off_rad > SADDLE_HALF_PI;
         angles.toe_off_rad = angles.limited ? SADDLE_HALF_PI : toe_off_rad;
-        angles.heel_strike_rad = transition->heel_strike_rad * (1.0f - progress);
+        angles.heel_strike_rad = transition->strike.angle_rad * (1.0f - progress);
     }
     return angles;
 }
@@ -83,7 +82,7 @@ void saddle_ankle(const saddle_model_t *model, const saddle_transition_t *transi
     const float angle_rad = toe_off_acts ? angles.toe_off_rad : angles.heel_strike_rad;
     const float toe_off_rate = angles.limited ? 0.0f : transition->toe_off_rad;
     const float angle_rate =
-        progress_rate * (toe_off_acts ? toe_off_rate : -transition->heel_strike_rad);
+        progress_rate * (toe_off_acts ? toe_off_rate : -transition->strike.angle_rad);
     ankle->limited = angles.limited;
     ankle->toe_off_rad = angles.toe_off_rad;
     ankle->heel_strike_rad = angles.heel_strike_rad;

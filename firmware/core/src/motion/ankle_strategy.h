@@ -14,9 +14,12 @@ typedef struct {
     bool limited;         /**< an angle is beyond what an ankle does */
 } saddle_ankle_state_t;
 
-/** The transition at the saddle via point of a quarter. heel_strike_rad in [0, pi/2]. */
+/** [E12] A heel strike at an angle in [0, pi/2]. */
+saddle_heel_strike_t saddle_heel_strike(const saddle_model_t *model, float angle_rad);
+
+/** The transition at the saddle via point of a quarter. */
 saddle_transition_t saddle_transition(const saddle_model_t *model, const saddle_quarter_t *quarter,
-                                      float heel_strike_rad);
+                                      saddle_heel_strike_t strike);
 
 /** Ankle angles, sole to ground. */
 typedef struct {
@@ -39,9 +42,6 @@ void saddle_ankle(const saddle_model_t *model, const saddle_transition_t *transi
 /** [E14] CoM height and its rate over a stance CoP at `offset_m` horizontally from it. */
 void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m,
                        saddle_vec2_t velocity_m_s, float *height_m, float *height_rate_m_s);
-
-/** [E12] Distance that the CoM goes between a heel strike at that angle and the saddle via point. */
-float saddle_heel_strike_lead_m(const saddle_model_t *model, float heel_strike_rad);
 
 /** [E25] The ankle angle that gives the stance leg its length: of toe-off or of heel strike, at
  *  most pi/2, the sole upright. False if it would be more. */

@@ -115,7 +115,7 @@ static void reshape(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_q
         cycle->vertical = saddle_blend(actual->vertical, reference.vertical, x_m, rest_m);
     } else {
         cycle->transition = saddle_transition(
-            model, &cycle->quarter, before ? cycle->next_heel_strike_rad : cycle->heel_strike_rad);
+            model, &cycle->quarter, before ? cycle->next_strike : cycle->transition.strike);
     }
 }
 
@@ -177,7 +177,7 @@ static float length_m(float x_m, float y_m, float z_m)
 static saddle_ankle_angles_t angles_at_saddle(const saddle_cycle_t *cycle,
                                               const saddle_model_t *model)
 {
-    const float lead_s = cycle->transition.heel_strike_lead_m / shaping_speed_m_s(cycle);
+    const float lead_s = cycle->transition.strike.lead_m / shaping_speed_m_s(cycle);
     return saddle_ankle_angles(model, &cycle->transition, lead_s);
 }
 
@@ -199,8 +199,9 @@ static float toe_off_angle_rad(const saddle_cycle_t *cycle, const saddle_model_t
 static void plan_heel_strike(saddle_cycle_t *cycle, const saddle_model_t *model,
                              float heel_strike_rad)
 {
-    cycle->next_heel_strike_rad = heel_strike_rad;
-    cycle->next_lead_m = saddle_heel_strike_lead_m(model, heel_strike_rad);
+    if (heel_strike_rad != cycle->next_strike.angle_rad) {
+        cycle->next_strike = saddle_heel_strike(model, heel_strike_rad);
+    }
 }
 
 /* The saddle via point: the swing foot has landed and carries from now on. */
@@ -222,7 +223,6 @@ static void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model, sadd
     move_to(cycle, -cycle->quarter_length);
     cycle->origin_x_nm += 2 * saddle_position_to_nm(cycle->quarter_length);
     cycle->stance_y_m += step_y_m;
-    cycle->heel_strike_rad = cycle->next_heel_strike_rad;
     plan_heel_strike(cycle, model, heel_strike_rad);
     reshape(cycle, model,
             saddle_quarter(model, saddle_other_side(cycle->quarter.stance), length_m,
@@ -238,9 +238,10 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
     const place_t actual = {{start->com_y_m, 0.0f}, {start->com_z_m, 0.0f}};
     const bool beside = start->phase % 2u == 0u;
     const saddle_sin_cos_t phase = beside ? SADDLE_PHASE_FOOT : SADDLE_PHASE_LANDED;
+    const saddle_heel_strike_t none = {0.0f, 0.0f};
     saddle_profile_set_speed(&cycle->profile, start->speed);
     const float speed_m_s = cycle->profile.speed_m_s;
-    cycle->heel_strike_rad = 0.0f;
+    cycle->transition.strike = none;
     plan_heel_strike(cycle, model, start->heel_strike_rad);
     cycle->phase = start->phase;
     cycle->stance_y_m = start->stance_y_m;
@@ -462,8 +463,8 @@ static void erf_height(const saddle_cycle_t *cycle, const saddle_model_t *model,
     const float time_s = (before ? -to_saddle_m : to_saddle_m) / shaped_m_s;
     const saddle_vec2_t offset_m = {pose->com_m.x, pose->com_m.y};
     const saddle_vec2_t velocity_m_s = {pose->com_velocity_m_s.x, pose->com_velocity_m_s.y};
-    saddle_ankle(model, &cycle->transition,
-                 time_s + cycle->transition.heel_strike_lead_m / shaped_m_s, before, &pose->ankle);
+    saddle_ankle(model, &cycle->transition, time_s + cycle->transition.strike.lead_m / shaped_m_s,
+                 before, &pose->ankle);
     pose->ankle_limited = cycle->transition.toe_off_limited || pose->ankle.limited;
     pose->ankle.leg_rate_m_s *= speed_m_s / shaped_m_s;
     saddle_com_height(&pose->ankle, offset_m, velocity_m_s, &pose->com_m.z,
@@ -519,7 +520,7 @@ float saddle_cycle_strike_lead_m(const saddle_cycle_t *cycle, const saddle_model
                                  float half_step_m)
 {
     return model->config.strike_share > 0.0f ? model->body.strike_lead * half_step_m
-                                             : cycle->next_lead_m;
+                                             : cycle->next_strike.lead_m;
 }
 
 void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,

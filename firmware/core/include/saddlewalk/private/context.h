@@ -95,12 +95,16 @@ typedef struct {
     float path_width_m; /**< of the quarter whose lateral path is followed */
 } saddle_swing_t;
 
+typedef struct {
+    float angle_rad; /**< of the foot, commanded */
+    float lead_m;    /**< CoM distance from there to the saddle via point, [E12] */
+} saddle_heel_strike_t;
+
 /** One step-to-step transition. */
 typedef struct {
-    float heel_strike_rad;    /**< commanded angle of the foot at heel strike */
-    float toe_off_rad;        /**< toe-off angle when the heel strikes, [E13] */
-    float heel_strike_lead_m; /**< CoM distance from heel strike to saddle via point, [E12] */
-    bool toe_off_limited;     /**< the geometry asks for an angle outside [0, pi] */
+    saddle_heel_strike_t strike;
+    float toe_off_rad;    /**< toe-off angle when the heel strikes, [E13] */
+    bool toe_off_limited; /**< the geometry asks for an angle outside [0, pi] */
 } saddle_transition_t;
 
 /** The gait cycle. Every length is measured from the stance CoP, y from the walking line. */
@@ -120,12 +124,10 @@ typedef struct {
     saddle_blend_t lateral;  /**< mismatch of CoM y */
     saddle_blend_t vertical; /**< mismatch of CoM z, cycloid only */
     saddle_swing_t swing;
-    float lift_pitch_rad;           /**< of the swing foot when it lifted off */
-    float heel_strike_rad;          /**< of the last heel strike */
-    float next_heel_strike_rad;     /**< of the next one */
-    float next_lead_m;              /**< of the CoM from there to the saddle via point, [E12] */
-    saddle_transition_t transition; /**< of the nearest saddle via point, erf and rigid only */
-    saddle_vec2_t last_step_m;      /**< from the old stance foot to the new one */
+    float lift_pitch_rad;             /**< of the swing foot when it lifted off */
+    saddle_heel_strike_t next_strike; /**< of the next landing */
+    saddle_transition_t transition;   /**< of the nearest saddle via point, erf and rigid only */
+    saddle_vec2_t last_step_m;        /**< from the old stance foot to the new one */
 } saddle_cycle_t;
 
 typedef struct {
