@@ -69,25 +69,35 @@ static saddle_sample_t sum(saddle_sample_t a, saddle_sample_t b)
     return total;
 }
 
-/* The CoM at a place: y, and z for the cycloid; the other ankles have no height of their own. */
+/* Where the running quarter has the CoM at a phase: y, */
+static saddle_sample_t lateral_at(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                                  saddle_sin_cos_t phase)
+{
+    const bool last = cycle->last_swing && !saddle_cycle_before_landing(cycle);
+    return saddle_shaped_lateral(&cycle->quarter, saddle_shape(model, last), phase);
+}
+
+/* and z for the cycloid; the other ankles have no height of their own. */
+static saddle_sample_t vertical_at(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                                   saddle_sin_cos_t phase)
+{
+    const bool last = cycle->last_swing && !saddle_cycle_before_landing(cycle);
+    if (model->config.ankle != SADDLE_ANKLE_CYCLOID) {
+        return (saddle_sample_t){0.0f, 0.0f};
+    }
+    return saddle_shaped_height(&cycle->quarter, saddle_shape(model, last), model->body.pendulum_m,
+                                phase);
+}
+
+/* The CoM at a place. */
 typedef struct {
     saddle_sample_t lateral, vertical;
 } place_t;
 
-/* Where the running quarter has the CoM at a phase. */
 static place_t reference_at(const saddle_cycle_t *cycle, const saddle_model_t *model,
                             saddle_sin_cos_t phase)
 {
-    const saddle_sample_t none = {0.0f, 0.0f};
-    const bool cycloid = model->config.ankle == SADDLE_ANKLE_CYCLOID;
-    const saddle_quarter_t *quarter = &cycle->quarter;
-    const saddle_shape_t *shape =
-        saddle_shape(model, cycle->last_swing && !saddle_cycle_before_landing(cycle));
-    return (place_t){
-        .lateral = saddle_shaped_lateral(quarter, shape, phase),
-        .vertical =
-            cycloid ? saddle_shaped_height(quarter, shape, model->body.pendulum_m, phase) : none,
-    };
+    return (place_t){lateral_at(cycle, model, phase), vertical_at(cycle, model, phase)};
 }
 
 /* Where the CoM is x_m from the stance CoP: the reference, and what of a mismatch is left. */
@@ -473,10 +483,10 @@ static void erf_height(const saddle_cycle_t *cycle, const saddle_model_t *model,
 
 /* The cycloid's height, and the ankles that give it. */
 static void cycloid_height(const saddle_cycle_t *cycle, const saddle_model_t *model,
-                           saddle_sample_t reference, saddle_pose_t *pose)
+                           saddle_pose_t *pose)
 {
-    const saddle_sample_t vertical =
-        sum(reference, saddle_blend_at(&cycle->vertical, pose->com_m.x));
+    const saddle_sample_t vertical = sum(vertical_at(cycle, model, saddle_cycle_phase(cycle)),
+                                         saddle_blend_at(&cycle->vertical, pose->com_m.x));
     const saddle_vec3_t *com = &pose->com_m;
     pose->com_m.z = vertical.value;
     pose->com_velocity_m_s.z = vertical.slope * pose->com_velocity_m_s.x;
@@ -511,9 +521,8 @@ static float swing_pitch_rad(const saddle_cycle_t *cycle, const saddle_model_t *
 
 float saddle_cycle_com_y_m(const saddle_cycle_t *cycle, const saddle_model_t *model)
 {
-    const float x_m = cycle->x_m;
-    const place_t reference = reference_at(cycle, model, saddle_cycle_phase(cycle));
-    return place_at(cycle, &reference, x_m).lateral.value;
+    return lateral_at(cycle, model, saddle_cycle_phase(cycle)).value +
+           saddle_blend_at(&cycle->lateral, cycle->x_m).value;
 }
 
 float saddle_cycle_strike_lead_m(const saddle_cycle_t *cycle, const saddle_model_t *model,
@@ -531,8 +540,8 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
     const float quarter_m = cycle->quarter.length_m;
     const bool before = saddle_cycle_before_landing(cycle);
     const saddle_sin_cos_t phase = saddle_cycle_phase(cycle);
-    const place_t reference = reference_at(cycle, model, phase);
-    const saddle_sample_t lateral = sum(reference.lateral, saddle_blend_at(&cycle->lateral, x_m));
+    const saddle_sample_t lateral =
+        sum(lateral_at(cycle, model, phase), saddle_blend_at(&cycle->lateral, x_m));
     const float to_saddle_m = before ? quarter_m - x_m : quarter_m + x_m;
     pose->progress = quarter_progress(cycle, x_m);
     pose->com_m.x = x_m;
@@ -540,7 +549,7 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
     pose->com_velocity_m_s.x = speed_m_s;
     pose->com_velocity_m_s.y = lateral.slope * speed_m_s;
     if (model->config.ankle == SADDLE_ANKLE_CYCLOID) {
-        cycloid_height(cycle, model, reference.vertical, pose);
+        cycloid_height(cycle, model, pose);
     } else {
         erf_height(cycle, model, to_saddle_m, speed_m_s, pose);
     }
