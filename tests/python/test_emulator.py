@@ -2,13 +2,14 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from saddlewalk.cli import main
-from saddlewalk.contract import LEFT, RIGHT, STANDING, TICK_S, WALKING
-from saddlewalk.core import ffi, library
+from saddlewalk.contract import LEFT, RIGHT, STABLE, STANDING, TICK_S, WALKING
+from saddlewalk.core import Core, ffi, library
 from saddlewalk.emulation import closed_loop
 from saddlewalk.emulation.closed_loop import Tick
 from saddlewalk.emulation.wearer import (
@@ -292,6 +293,26 @@ def test_a_wearer_who_stood_for_a_minute_walks_again():
     wearer = walk(Wearer(seed=5), [(0.0, 1.2), (6.0, 0.0), (70.0, 0.8), (78.0, 0.0)], 84.0)
     assert not wearer.fallen
     assert wearer.com_m.real > 9.0
+
+
+@pytest.mark.parametrize(("rolls", "steady"), [(False, True), (True, False)])
+def test_a_foot_is_measured_by_the_middle_of_its_sole(rolls, steady):
+    """With the CoP that rolls from heel to toe in its place, a steady walk is called unstable."""
+    judge, levels = Core(default_config()), set()
+    wearer, schedule = Wearer(seed=1), schedule_of([(0.0, 1.4)], 0.17)
+    for tick in closed_loop.walk(default_config(), wearer, schedule):
+        if tick.time_s > 15:
+            break
+        cops = [foot.position_m for foot in wearer.feet]
+        cops[wearer._leading] = complex(wearer.cop_m.real, cops[wearer._leading].imag)
+        rolling = tuple(cop - wearer.com_m for cop in cops)
+        measured = replace(tick.measured, feet_m=rolling) if rolls else tick.measured
+        told = judge.tick(
+            round(tick.time_s * 1e6), schedule(tick.time_s), closed_loop.measurement_of(measured)
+        )
+        if tick.time_s > 5:
+            levels.add(told.verdict.level)
+    assert (levels == {STABLE}) == steady
 
 
 def landings_missed_by(

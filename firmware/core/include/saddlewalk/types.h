@@ -1,7 +1,12 @@
 /** What goes into the core and what comes out: configuration, command, measurement, plan, scores,
  *  verdict, and the faults and limits that go with them. The functions are in saddlewalk.h.
  *
- *  Frame: x forward, y to the left, z up; ground z = 0; walking line y = 0. SI units and radians. */
+ *  Frame: x forward, y to the left, z up; ground z = 0; walking line y = 0. SI units and radians.
+ *
+ *  The CoP of a foot, as in the paper, is a fixed point of its sole: the middle, midway between the heel
+ *  and the metatarsus. It is measured by where the foot is. The centre of the pressure under the foot,
+ *  which rolls from heel to toe in each step, must not be given for it. The one exception is
+ *  saddle_reference_t. */
 #ifndef SADDLEWALK_TYPES_H
 #define SADDLEWALK_TYPES_H
 
@@ -153,7 +158,7 @@ typedef struct {
         uint32_t age_us;
     } com;
     struct {
-        saddle_vec2_t cop_m; /**< relative to the CoM */
+        saddle_vec2_t cop_m; /**< middle of the sole, relative to the CoM */
         bool contact;
         uint32_t age_us;
     } foot[2];
@@ -223,7 +228,7 @@ typedef struct {
     saddle_vec2_t com_m;
     saddle_vec2_t xcom_m; /**< rate: natural frequency times its distance from cop_m, [E39];
                                that of com_m: times its distance from xcom_m */
-    saddle_vec2_t cop_m;  /**< of both feet together, within the soles */
+    saddle_vec2_t cop_m;  /**< where the ground's force acts, of both feet together: rolls */
     float load[2];        /**< share of the weight that each foot carries; their sum is 1 */
 } saddle_reference_t;
 
@@ -241,7 +246,7 @@ typedef struct {
     float speed_m_s, step_length_m, step_width_m; /**< of the running quarter */
     float acceleration_m_s2;                      /**< rate of change of that speed */
     saddle_vec3_t com_m, com_velocity_m_s;
-    saddle_vec3_t foot_m[2];            /**< CoPs */
+    saddle_vec3_t foot_m[2];            /**< middles of the soles */
     float foot_pitch_rad[2];            /**< sole to ground, positive heel up */
     saddle_vec3_t swing_velocity_m_s;   /**< of the foot that is not in support */
     float leg_length_m;                 /**< stance leg */
