@@ -1,4 +1,4 @@
-"""The C library of the joints in this process: segments of a body, joint angles and back."""
+"""The C library of the joints in this process: segments, joint angles, estimates and commands."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -74,3 +74,12 @@ class Estimator:
         estimate = ffi().new("saddle_estimate_t *")
         library().saddle_estimator_update(self._state, self.sensors, estimate)
         return estimate
+
+
+def commands(body: Any, drive: Any, estimate: Any, intent: Any) -> Any:
+    """saddle_joint_commands(): the saddle_joint_commands_t * for a saddle_drive_config_t *, a
+    saddle_estimate_t * and a saddle_intent_t *.
+    """
+    result = ffi().new("saddle_joint_commands_t *")
+    library().saddle_joint_commands(body, drive, estimate, intent, result)
+    return result

@@ -36,6 +36,7 @@ void device_begin(device_t *device, bool absurd)
     device->trunk.hips_m.z = 0.8f;
     device->trunk.axes.x.x = device->trunk.axes.y.y = device->trunk.axes.z.z = 1.0f;
     const saddle_estimator_config_t config = saddle_estimator_default();
+    device->drive = saddle_drive_default();
     (void)saddle_estimator_init(&device->estimator, &device->legs, &config);
 }
 
@@ -87,6 +88,23 @@ static void spoil(device_t *device, void *object, size_t size)
     }
 }
 
+/* The joints as they are, and a CoP near the foot that stands. */
+static void intend(device_t *device)
+{
+    saddle_intent_t *intent = &device->intent;
+    const uint32_t ms = device->updates % (2u * STEP_MS);
+    const unsigned swing = ms < STEP_MS ? SADDLE_RIGHT : SADDLE_LEFT;
+    intent->role[swing] = ms % STEP_MS < STEP_MS / 3u ? SADDLE_LEG_TRAILS : SADDLE_LEG_SWINGS;
+    intent->role[1u - swing] = SADDLE_LEG_STANDS;
+    intent->leading = (uint8_t)(1u - swing);
+    intent->trailing_share_max = random_in(&device->random, 0.0f, 1.0f);
+    intent->cop_m.x = random_in(&device->random, -0.05f, 0.05f);
+    intent->xcom_m.x = random_in(&device->random, -0.05f, 0.05f);
+    intent->com_height_m = random_in(&device->random, 0.9f, 1.0f);
+    intent->joints = device->joints;
+    intent->acceleration_rad_s2[swing][SADDLE_KNEE] = random_in(&device->random, -50.0f, 50.0f);
+}
+
 void device_update(device_t *device)
 {
     step_in_place(device);
@@ -103,5 +121,11 @@ void device_update(device_t *device)
     spoil(device, &sensors.gyro_rad_s,
           offsetof(saddle_sensors_t, imu_age_us) - offsetof(saddle_sensors_t, gyro_rad_s));
     (void)saddle_estimator_update(&device->estimator, &sensors, &device->estimate);
+    intend(device);
+    saddle_intent_t intent = device->intent;
+    spoil(device, &intent.trailing_share_max,
+          sizeof intent - offsetof(saddle_intent_t, trailing_share_max));
+    saddle_joint_commands(&device->legs, &device->drive, &device->estimate, &intent,
+                          &device->commands);
     device->updates++;
 }

@@ -3,8 +3,7 @@
 #ifndef SADDLEWALK_DEVICE_H
 #define SADDLEWALK_DEVICE_H
 
-#include <saddlewalk/estimator.h>
-#include <saddlewalk/joints.h>
+#include <saddlewalk/joint_command.h>
 
 typedef struct {
     bool absurd; /**< any bits for some of the floats */
@@ -19,12 +18,15 @@ typedef struct {
     saddle_estimator_t estimator;
     saddle_sensors_t sensors;
     saddle_estimate_t estimate;
+    saddle_drive_config_t drive;
+    saddle_intent_t intent;
+    saddle_joint_commands_t commands;
 } device_t;
 
 void device_begin(device_t *device, bool absurd);
 
 /** One millisecond: somebody steps in place; joints by the inverse, the body by the forward kinematics,
- *  and what the sensors of that body give. */
+ *  what the sensors of that body give, the estimate, and the joints' commands. */
 void device_update(device_t *device);
 
 #endif

@@ -58,17 +58,27 @@ static void add_estimate(const saddle_estimate_t *estimate)
     add(&estimate->trunk.hips_m.x, sizeof estimate->trunk / sizeof(float));
 }
 
-static void print(const char *name, bool absurd, bool estimates)
+static void add_commands(const saddle_joint_commands_t *commands)
+{
+    add(&commands->joint[0][0].angle_rad, sizeof commands->joint / sizeof(float));
+    add(&commands->cop_m.x, 2);
+    add(commands->load_share, 2);
+    add_bits(commands->fallback);
+}
+
+typedef enum { KINEMATICS, ESTIMATES, COMMANDS } part_t;
+
+static void print(const char *name, bool absurd, part_t part)
 {
     static device_t device;
     hash = 0xCBF29CE484222325u;
     device_begin(&device, absurd);
     while (device.updates < UPDATES) {
         device_update(&device);
-        if (estimates) {
-            add_estimate(&device.estimate);
-        } else {
-            add_kinematics(&device);
+        switch (part) {
+        case KINEMATICS: add_kinematics(&device); break;
+        case ESTIMATES: add_estimate(&device.estimate); break;
+        default: add_commands(&device.commands); break;
         }
     }
     printf("%s %08lx%08lx\n", name, (unsigned long)(hash >> 32),
@@ -77,9 +87,11 @@ static void print(const char *name, bool absurd, bool estimates)
 
 int main(void)
 {
-    print("kinematics", false, false);
-    print("kinematics_absurd", true, false);
-    print("estimates", false, true);
-    print("estimates_absurd", true, true);
+    print("kinematics", false, KINEMATICS);
+    print("kinematics_absurd", true, KINEMATICS);
+    print("estimates", false, ESTIMATES);
+    print("estimates_absurd", true, ESTIMATES);
+    print("commands", false, COMMANDS);
+    print("commands_absurd", true, COMMANDS);
     return 0;
 }

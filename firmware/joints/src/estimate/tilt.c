@@ -48,15 +48,17 @@ static saddle_vec3_t sole_tilt(const saddle_axes_t *sole, saddle_vec3_t up)
     return saddle_vec3_cross(sole->z, up);
 }
 
-/* [J11] A sole is flat that carries and is not tilted in earnest; at the start every one that
- * carries. */
+/* [J11] A sole is flat that carries, or that somebody stands on, and is not tilted in earnest; at the
+ * start every one that carries. */
 static bool lies_flat(const saddle_estimator_t *estimator, saddle_vec3_t tilt)
 {
     if (estimator->settling_s > 0.0f) {
         return estimator->contact[estimator->anchor_foot];
     }
     const float sine = saddle_sin(estimator->config.flat_max_rad);
-    return saddle_load_share(estimator, estimator->anchor_foot) >= estimator->config.sole_share &&
+    const bool carries =
+        saddle_load_share(estimator, estimator->anchor_foot) >= estimator->config.sole_share;
+    return (carries || estimator->still_s >= STILL_AFTER_S) &&
            saddle_vec3_dot(tilt, tilt) <= sine * sine;
 }
 
@@ -83,6 +85,9 @@ static void learn_bias(saddle_estimator_t *estimator, const saddle_imu_t *imu, f
 {
     if (!stands_still(estimator, imu)) {
         estimator->still_s = 0.0f;
+        if (estimator->bias_s > 0.0f) {
+            estimator->bias_s = estimator->config.bias_time_s; /* the first standing was for that */
+        }
         return;
     }
     estimator->still_s = saddle_smaller(estimator->still_s + dt_s, STILL_AFTER_S);

@@ -49,8 +49,8 @@ saddle_estimator_config_t saddle_estimator_default(void)
     config.heading_gain_1_s = 0.5f;
     config.flat_max_rad = 0.12f;
     config.roll_min_rad = 0.03f;
-    config.bias_time_s = 5.0f;
-    config.still_max_rad_s = 0.1f;
+    config.bias_time_s = 30.0f;
+    config.still_max_rad_s = 0.05f;
     config.settle_time_s = 0.4f;
     config.contact_on_n = 30.0f;
     config.contact_off_n = 20.0f;
