@@ -67,7 +67,7 @@ typedef struct {
 
 static turn_t turn_of(float x_rad)
 {
-    if (!saddle_in_range(x_rad, -SADDLE_TWO_PI, SADDLE_TWO_PI)) {
+    if (!(saddle_magnitude(x_rad) <= SADDLE_TWO_PI)) {
         x_rad = 0.0f;
     }
     const int32_t quarters = (int32_t)(x_rad * TWO_OVER_PI + (x_rad < 0.0f ? -0.5f : 0.5f));
@@ -126,7 +126,7 @@ typedef struct {
     float fraction;
 } exp_parts_t;
 
-static exp_parts_t exp_parts(float x)
+static inline exp_parts_t exp_parts(float x)
 {
     const int32_t biased_exponent = (int32_t)(x * LOG2_E + 127.5f);
     const float k = (float)(biased_exponent - 127);
@@ -141,7 +141,7 @@ static exp_parts_t exp_parts(float x)
 
 float saddle_exp(float x)
 {
-    if (x != x || x < EXP_LOWEST) {
+    if (!(x >= EXP_LOWEST)) {
         return 0.0f;
     }
     const exp_parts_t e = exp_parts(x > EXP_HIGHEST ? EXP_HIGHEST : x);
