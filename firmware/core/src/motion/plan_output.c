@@ -153,8 +153,8 @@ static void write_standing(const saddle_planner_t *planner, const saddle_model_t
 }
 
 /* [E8] */
-static uint32_t write_walking(const saddle_planner_t *planner, const saddle_model_t *model,
-                              saddle_plan_t *plan)
+static SADDLE_NOINLINE uint32_t write_walking(const saddle_planner_t *planner,
+                                              const saddle_model_t *model, saddle_plan_t *plan)
 {
     const saddle_cycle_t *cycle = &planner->cycle;
     const saddle_side_t stance = cycle->quarter.stance;
