@@ -78,24 +78,22 @@ static decay_t decay_in(float kappa, float share)
 }
 
 /* [E39] */
-static phase_t phase_of(const saddle_model_t *model, const step_t *step)
+static void phase_of(const saddle_model_t *model, const step_t *step, phase_t *phase)
 {
     const float share = model->config.double_support_share;
     const float per_m =
         model->body.natural_frequency_rad_s / saddle_larger(step->speed_m_s, SPEED_MIN_M_S);
     const float length_m = 0.5f * (step->made_m.x + step->next_m.x);
-    phase_t phase;
-    phase.share = share;
-    phase.now = decay_in(per_m * length_m, share);
-    phase.next = length_m == step->next_m.x ? phase.now : decay_in(per_m * step->next_m.x, share);
-    phase.crosses = step->progress < share;
-    phase.since_end = step->progress - (phase.crosses ? share : 1.0f);
-    phase.growth = decay(-phase.now.kappa * phase.since_end);
-    return phase;
+    phase->share = share;
+    phase->now = decay_in(per_m * length_m, share);
+    phase->next = length_m == step->next_m.x ? phase->now : decay_in(per_m * step->next_m.x, share);
+    phase->crosses = step->progress < share;
+    phase->since_end = step->progress - (phase->crosses ? share : 1.0f);
+    phase->growth = decay(-phase->now.kappa * phase->since_end);
 }
 
 /* [E39] */
-static state_t state_in(const axis_t *axis, const phase_t *phase)
+static void state_in(const axis_t *axis, const phase_t *phase, state_t *state)
 {
     const decay_t *now = &phase->now;
     const decay_t *next = &phase->next;
@@ -122,13 +120,11 @@ static state_t state_in(const axis_t *axis, const phase_t *phase)
         recedes = begin * now->crossing;
         from = axis->enter;
     }
-    state_t state;
-    state.cop = from + slope * now->kappa * phase->since_end;
-    state.advancing = state.cop + slope + offset * phase->growth;
-    state.receding = state.cop - slope + recedes / phase->growth;
-    state.speed_rate =
+    state->cop = from + slope * now->kappa * phase->since_end;
+    state->advancing = state->cop + slope + offset * phase->growth;
+    state->receding = state->cop - slope + recedes / phase->growth;
+    state->speed_rate =
         slope + (offset_rate - now->kappa * phase->since_end * offset) * phase->growth;
-    return state;
 }
 
 /* [E40] Where the CoP leaves the foot: a walk that brakes needs some of the toes for it. */
@@ -146,19 +142,18 @@ typedef struct {
     float carried; /* share of the load that the stance foot carries */
 } motion_t;
 
-static motion_t motion_in(const saddle_model_t *model, const step_t *step)
+static void motion_in(const saddle_model_t *model, const step_t *step, motion_t *motion)
 {
     const float leave = leave_m(model, step->acceleration_m_s2);
     const float enter = model->config.cop_enter * model->config.cop_range_m;
     const axis_t along = {leave - step->made_m.x, enter, leave, step->next_m.x + enter - leave,
                           1.0f};
     const axis_t across = {-step->made_m.y, 0.0f, 0.0f, step->next_m.y, -1.0f};
-    const phase_t phase = phase_of(model, step);
-    motion_t motion;
-    motion.x = state_in(&along, &phase);
-    motion.y = state_in(&across, &phase);
-    motion.carried = phase.crosses ? step->progress / phase.share : 1.0f;
-    return motion;
+    phase_t phase;
+    phase_of(model, step, &phase);
+    state_in(&along, &phase, &motion->x);
+    state_in(&across, &phase, &motion->y);
+    motion->carried = phase.crosses ? step->progress / phase.share : 1.0f;
 }
 
 static void place(const step_t *step, float x_m, float y_m, saddle_vec2_t *point)
@@ -189,7 +184,8 @@ static void walk(const saddle_model_t *model, const step_t *step, saddle_referen
     const float relative =
         step->acceleration_m_s2 /
         (saddle_larger(step->speed_m_s, SPEED_MIN_M_S) * model->body.natural_frequency_rad_s);
-    motion_t motion = motion_in(model, step);
+    motion_t motion;
+    motion_in(model, step, &motion);
     const float behind = 1.0f - motion.carried;
     motion.x.cop = shifted(motion.x.cop, -relative * motion.x.speed_rate, -behind * step->made_m.x,
                            model->config.cop_range_m);
@@ -265,10 +261,12 @@ static saddle_vec2_t standing_place_m(const saddle_model_t *model, saddle_vec2_t
     return place_m;
 }
 
-/* Where a first swing began, at rest, and when. */
+/* Where a first swing began, at rest, and when; what decays in the time since then, in the time that is
+ * left, and in both. */
 typedef struct {
     saddle_vec2_t begin_m;
     float elapsed_s, left_s;
+    float elapsed, left, whole;
 } first_swing_t;
 
 /* The plan begins beside the stance foot, or where the feet were apart midway between them. */
@@ -289,16 +287,13 @@ static first_swing_t first_swing_of(const saddle_model_t *model, const saddle_pl
 }
 
 /* [E41] Along one axis, from rest at begin to an XCoM at the landing, about a CoP that stays. */
-static state_t fall(float begin, float landing, float range, const first_swing_t *first, float w)
+static void fall(float begin, float landing, float range, const first_swing_t *first,
+                 state_t *state)
 {
-    const float grown = decay(w * (first->elapsed_s + first->left_s));
-    const float wanted = begin - (landing - begin) * grown / (1.0f - grown);
-    state_t state;
-    state.cop = saddle_clamp(wanted, -range, range);
-    state.advancing = state.cop + (landing - state.cop) * decay(w * first->left_s);
-    state.receding = state.cop + (begin - state.cop) * decay(w * first->elapsed_s);
-    state.speed_rate = 0.0f;
-    return state;
+    const float wanted = begin - (landing - begin) * first->whole / (1.0f - first->whole);
+    state->cop = saddle_clamp(wanted, -range, range);
+    state->advancing = state->cop + (landing - state->cop) * first->left;
+    state->receding = state->cop + (begin - state->cop) * first->elapsed;
 }
 
 /* Speed at the landing of a first swing: it has changed evenly until then. */
@@ -328,12 +323,15 @@ static void begin_walk(const saddle_model_t *model, const saddle_plan_t *plan, f
     }
     first.left_s -= after_s;
     first.elapsed_s += after_s;
-    const motion_t landed = motion_in(model, &next);
-    motion_t motion;
-    motion.x = fall(first.begin_m.x, step.next_m.x + landed.x.advancing, model->config.cop_range_m,
-                    &first, w);
-    motion.y = fall(first.begin_m.y, -step.next_m.y - landed.y.advancing,
-                    model->config.cop_shift_ml_m, &first, w);
+    first.elapsed = decay(w * first.elapsed_s);
+    first.left = decay(w * first.left_s);
+    first.whole = decay(w * (first.elapsed_s + first.left_s));
+    motion_t landed, motion;
+    motion_in(model, &next, &landed);
+    fall(first.begin_m.x, step.next_m.x + landed.x.advancing, model->config.cop_range_m, &first,
+         &motion.x);
+    fall(first.begin_m.y, -step.next_m.y - landed.y.advancing, model->config.cop_shift_ml_m, &first,
+         &motion.y);
     motion.carried = 1.0f;
     write(&step, &motion, reference);
 }
@@ -405,7 +403,8 @@ static void end_walk(const saddle_model_t *model, const saddle_plan_t *plan, flo
     const float rest_m = standing_place_m(model, beside_m).y;
     step.next_m = step.made_m;
     step.speed_m_s = step.made_m.x / total_s;
-    const motion_t landed = motion_in(model, &step);
+    motion_t landed;
+    motion_in(model, &step, &landed);
     motion_t motion;
     motion.x = come_to_rest(&landed.x, 0.0f, model->config.cop_range_m, &last);
     motion.y = come_to_rest(&landed.y, rest_m, model->config.cop_shift_ml_m, &last);
