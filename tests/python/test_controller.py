@@ -71,6 +71,15 @@ def send_measurement(bus: SlcanBus, sender: Sender) -> None:
 
 
 @on_controller
+def test_a_body_in_mujoco_walks_by_its_plan(tmp_path):
+    """Chip, bus and physics: the joints' controller checks each plan against its own core's."""
+    for package in ("mujoco", "piqp"):
+        pytest.importorskip(package, reason="MuJoCo is missing: run `make physics`")
+    walk = ["--plant", "mujoco", "--speed", "0.8", "--duration", "2.4"]
+    assert demo(tmp_path / "out", "--firmware", "qemu-m4", *walk) == 0
+
+
+@on_controller
 def test_in_real_time_its_timer_makes_the_ticks_and_ages_grow():
     reader, sender, ticks = TickReader(), Sender(), []
     with qemu.running_controller(configuration({}), "realtime") as controller:

@@ -47,6 +47,9 @@ NOT_RUN = {
     ".venv/bin/saddlewalk faults": "minutes: test_faults.py",
     ".venv/bin/pip install -c requirements.lock": "packages from the network",
     ".venv/bin/dask": "other machines: test_workers.py",
+    "make physics": "packages from the network",
+    ".venv/bin/saddlewalk demo --plant mujoco": "half a minute, and MuJoCo: test_physics.py",
+    ".venv/bin/saddlewalk endure": "minutes: test_physics.py",
     "make controller": "a cross-compiler and QEMU: test_controller.py",
 }
 

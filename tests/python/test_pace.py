@@ -91,8 +91,8 @@ def test_a_walk_starts_at_the_same_tick_on_the_same_foot(clock, seed):
 
     from saddlewalk.commands.emulate import wearer_of
     from saddlewalk.config import load_config
-    from saddlewalk.emulation.plants import PlantChoice
     from saddlewalk.emulation.wearer import Noise
+    from saddlewalk.physics.plants import PlantChoice
     from saddlewalk.planning.schedule import schedule_of
 
     config = load_config(argparse.Namespace(height=None, mass=None, config=None))

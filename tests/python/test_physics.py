@@ -12,8 +12,8 @@ from saddlewalk.cli import main
 from saddlewalk.config import configuration
 from saddlewalk.contract import GRAVITY_M_S2, LEFT, RIGHT, STANDING, TICK_S
 from saddlewalk.emulation import closed_loop
-from saddlewalk.emulation.plants import PlantChoice
 from saddlewalk.emulation.wearer import Noise, Push
+from saddlewalk.physics.plants import PlantChoice
 from saddlewalk.planning.schedule import schedule_of
 
 BODIES = ("winter", "dm_control")

@@ -28,11 +28,11 @@ from saddlewalk.printable import printable
 if TYPE_CHECKING:
     from saddlewalk.atomic_write import RunFolder
     from saddlewalk.emulation.exoskeleton import Exoskeleton
-    from saddlewalk.emulation.plants import PlantChoice
     from saddlewalk.emulation.wearer import Wearer
     from saddlewalk.logs.recorder import Recorder
     from saddlewalk.logs.soundness import Check
     from saddlewalk.physics.film import Camera
+    from saddlewalk.physics.plants import PlantChoice
     from saddlewalk.view.beside import PageBeside
 
 VIEWED_S = 600.0
@@ -99,7 +99,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from saddlewalk.emulation.plants import chosen_plant
+    from saddlewalk.physics.plants import chosen_plant
 
     plant = chosen_plant(args)
     if args.duration is None:

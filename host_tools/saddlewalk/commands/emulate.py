@@ -17,9 +17,9 @@ from saddlewalk.options import (
 from saddlewalk.outputs import add_input
 
 if TYPE_CHECKING:
-    from saddlewalk.emulation.plants import PlantChoice
     from saddlewalk.emulation.wearer import Noise, Push, Wearer
     from saddlewalk.faults.scenario import Occurrence
+    from saddlewalk.physics.plants import PlantChoice
     from saddlewalk.planning.schedule import Speeds
 
 SPEED_M_S = 1.2
@@ -117,9 +117,9 @@ def push_text(text: str) -> tuple[float, float, float]:
 
 def run(args: argparse.Namespace) -> int:
     from saddlewalk.emulation.exoskeleton import Exoskeleton
-    from saddlewalk.emulation.plants import chosen_plant
     from saddlewalk.emulation.wearer import Noise
     from saddlewalk.faults.live import faulty
+    from saddlewalk.physics.plants import chosen_plant
     from saddlewalk.planning.schedule import schedule_of
     from saddlewalk.transport.authentication import read_key
     from saddlewalk.transport.bus import describe, open_bus

@@ -26,8 +26,8 @@ from saddlewalk.printable import printable
 from saddlewalk.progress import progress_bar
 
 if TYPE_CHECKING:
-    from saddlewalk.emulation.plants import PlantChoice
     from saddlewalk.evaluation.endurance import Course, Outcome
+    from saddlewalk.physics.plants import PlantChoice
 
 SPEEDS_M_S = (0.3, 0.6, 0.8, 1.0, 1.2, 1.4, 1.6)
 DISTANCE_M, REPEATS = 15.0, 5
@@ -99,8 +99,8 @@ def run(args: argparse.Namespace) -> int:
     """1: a walk ended in a fall, or not standing."""
     from rich.console import Console
 
-    from saddlewalk.emulation.plants import chosen_plant
     from saddlewalk.evaluation.endurance import endure, figures, grouped
+    from saddlewalk.physics.plants import chosen_plant
 
     plant = chosen_plant(args)
     _check(args, plant)

@@ -113,10 +113,10 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     from rich.console import Console
 
-    from saddlewalk.emulation.plants import chosen_plant
     from saddlewalk.evaluation.cross_validation import leave_one_out, table
     from saddlewalk.evaluation.gait_trials import score_folder
     from saddlewalk.evaluation.walks import Setting
+    from saddlewalk.physics.plants import chosen_plant
 
     console = Console(stderr=args.json == "-")
     plant = chosen_plant(args)

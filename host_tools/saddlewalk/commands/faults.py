@@ -18,9 +18,9 @@ from saddlewalk.outputs import add_input
 from saddlewalk.progress import progress_bar
 
 if TYPE_CHECKING:
-    from saddlewalk.emulation.plants import PlantChoice
     from saddlewalk.faults.campaign import Outcome, Row
     from saddlewalk.faults.scenario import Scenario
+    from saddlewalk.physics.plants import PlantChoice
 
 RUNS = 20
 LIVE_RUNS = 0
@@ -63,10 +63,10 @@ def run(args: argparse.Namespace) -> int:
     """1: an output was unsafe."""
     from rich.console import Console
 
-    from saddlewalk.emulation.plants import chosen_plant
     from saddlewalk.faults.campaign import rows_of
     from saddlewalk.faults.scenario import read_scenario
     from saddlewalk.paths import CHECKOUT
+    from saddlewalk.physics.plants import chosen_plant
 
     plant = chosen_plant(args)
     if plant.is_mujoco and args.live:

@@ -14,8 +14,8 @@ import numpy as np
 from saddlewalk.contract import LEVELS, STANDING, TICK_S
 from saddlewalk.core import ffi
 from saddlewalk.emulation import closed_loop
-from saddlewalk.emulation.plants import PlantChoice
 from saddlewalk.emulation.wearer import STEP_S, Wearer
+from saddlewalk.physics.plants import PlantChoice
 from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.table import Cell
 from saddlewalk.workers import Workers, run_tasks

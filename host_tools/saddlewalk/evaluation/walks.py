@@ -17,12 +17,12 @@ import numpy as np
 from saddlewalk.contract import STANDING, TICK_S, WALKING
 from saddlewalk.core import config_bytes, config_from, library
 from saddlewalk.emulation import closed_loop
-from saddlewalk.emulation.plants import POINT_MASS, PlantChoice
 from saddlewalk.emulation.wearer import Body, Noise, Push, Wearer
 from saddlewalk.evaluation import scoring
 from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_margin_m
 from saddlewalk.evaluation.emulated import TickRecorder
 from saddlewalk.evaluation.scoring import Announced, Score, one_tick_late, score
+from saddlewalk.physics.plants import POINT_MASS, PlantChoice
 from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.workers import Workers, run_tasks
 

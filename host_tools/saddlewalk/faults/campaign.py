@@ -18,11 +18,11 @@ from saddlewalk.contract import OUTPUT_FRAMES, STANDING, TICK_S
 from saddlewalk.emulation.closed_loop import STEPS_A_TICK
 from saddlewalk.emulation.exoskeleton import plan_of
 from saddlewalk.emulation.plans import planned
-from saddlewalk.emulation.plants import POINT_MASS, PlantChoice
 from saddlewalk.emulation.wearer import Plan, Wearer
 from saddlewalk.faults.checker import STATES, Checker
 from saddlewalk.faults.scenario import MEASURED, Fault, Line, Occurrence, Scenario, draw
 from saddlewalk.firmware import config_of, ffi, library
+from saddlewalk.physics.plants import POINT_MASS, PlantChoice
 from saddlewalk.ticks import Messages, TickReader
 from saddlewalk.transport import wire
 from saddlewalk.workers import Workers, run_tasks
