@@ -24,6 +24,9 @@
  * the planned path's slope the CoM would leave the feet sideways. */
 #define LANDING_STRETCH_MAX 2.0f
 
+/* A foot is waited for until the CoM is further ahead by no more than this share of the quarter. */
+#define LATE_SHARE_MAX 0.5f
+
 /* The CoM stays within this share of the pendulum's length from the stance foot, squared. */
 #define REACH_SHARE 0.8f
 
@@ -214,31 +217,49 @@ static void plan_heel_strike(saddle_cycle_t *cycle, const saddle_model_t *model,
     }
 }
 
-/* The saddle via point: the swing foot has landed and carries from now on. */
-static void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_fixed_t speed,
-                        float heel_strike_rad)
+/* A landing: the step from the old stance foot to the new one, and how far behind it the CoM is. */
+typedef struct {
+    saddle_vec2_t step_m;
+    int64_t step_nm; /* along x */
+    saddle_fixed_t behind;
+    float behind_m;
+} landing_t;
+
+/* The swing foot has landed, with the CoM at a place from the old stance foot: it carries from now on. */
+static void begin_step(saddle_cycle_t *cycle, const saddle_model_t *model, const landing_t *landing,
+                       const place_t *at_landing, float speed_m_s)
 {
-    const float length_m = cycle->quarter.length_m;
-    const float speed_m_s = saddle_speed_to_m_s(speed);
-    const float step_y_m = cycle->swing.line_y_m;
-    const saddle_vec2_t lifted_m = {-2.0f * length_m, -step_y_m};
-    place_t place = reference_at(cycle, model, SADDLE_PHASE_LANDING); /* no mismatch is left */
+    const saddle_vec2_t lifted_m = {-landing->step_m.x, -landing->step_m.y};
+    place_t place = *at_landing;
     cycle->lift_pitch_rad = toe_off_angle_rad(cycle, model, &place);
-    place.lateral.value -= step_y_m;
-    cycle->last_step_m.x = -lifted_m.x;
-    cycle->last_step_m.y = step_y_m;
+    place.lateral.value -= landing->step_m.y;
+    cycle->last_step_m = landing->step_m;
 
     cycle->phase++;
     cycle->step_count++;
-    move_to(cycle, -cycle->quarter_length);
-    cycle->origin_x_nm += 2 * saddle_position_to_nm(cycle->quarter_length);
-    cycle->stance_y_m += step_y_m;
-    plan_heel_strike(cycle, model, heel_strike_rad);
+    cycle->quarter_length = landing->behind;
+    move_to(cycle, -landing->behind);
+    cycle->origin_x_nm += landing->step_nm;
+    cycle->stance_y_m += landing->step_m.y;
     reshape(cycle, model,
-            saddle_quarter(model, saddle_other_side(cycle->quarter.stance), length_m,
-                           saddle_magnitude(step_y_m), speed_m_s),
+            saddle_quarter(model, saddle_other_side(cycle->quarter.stance), landing->behind_m,
+                           saddle_magnitude(landing->step_m.y), speed_m_s),
             SADDLE_PHASE_LANDED, &place);
     lift_off(cycle, model, lifted_m, speed_m_s, SADDLE_PHASE_LANDED);
+}
+
+/* The saddle via point: the swing foot lands as planned. */
+static void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_fixed_t speed)
+{
+    const place_t place =
+        reference_at(cycle, model, SADDLE_PHASE_LANDING); /* no mismatch is left */
+    const landing_t landing = {
+        .step_m = {2.0f * cycle->quarter.length_m, cycle->swing.line_y_m},
+        .step_nm = 2 * saddle_position_to_nm(cycle->quarter_length),
+        .behind = cycle->quarter_length,
+        .behind_m = cycle->quarter.length_m,
+    };
+    begin_step(cycle, model, &landing, &place, saddle_speed_to_m_s(speed));
 }
 
 void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
@@ -318,42 +339,6 @@ static bool comes_to_rest(const saddle_cycle_t *cycle, uint32_t dt_us, uint32_t 
     return true;
 }
 
-uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model,
-                              float heel_strike_rad, uint32_t dt_us, bool *arrived)
-{
-    uint32_t rest_us = 0;
-    *arrived = comes_to_rest(cycle, dt_us, &rest_us);
-    if (*arrived) {
-        rest_beside_foot(cycle);
-        return rest_us;
-    }
-    const saddle_speed_profile_t before = cycle->profile;
-    float distance_m = 0.0f;
-    saddle_fixed_t distance = saddle_profile_advance(&cycle->profile, dt_us);
-    for (int i = 0; i < VIA_POINTS_A_TICK; i++) {
-        const saddle_fixed_t end = saddle_cycle_before_landing(cycle) ? cycle->quarter_length : 0;
-        const saddle_fixed_t to_end = end - cycle->position;
-        if (distance < to_end || (cycle->last_swing && !saddle_cycle_before_landing(cycle))) {
-            break;
-        }
-        distance -= to_end;
-        distance_m += saddle_position_to_m(to_end);
-        move_to(cycle, end);
-        const saddle_fixed_t speed = saddle_profile_speed_after(&before, distance_m);
-        if (saddle_cycle_before_landing(cycle)) {
-            pass_saddle(cycle, model, speed, heel_strike_rad);
-        } else {
-            pass_foot(cycle, model, speed);
-        }
-    }
-    move_to(cycle, cycle->position + distance);
-    set_phase(cycle, saddle_quarter_phase(cycle->quarter.length_m, cycle->x_m));
-    if (!saddle_cycle_before_landing(cycle) && cycle->position > 0) {
-        rest_beside_foot(cycle);
-    }
-    return 0;
-}
-
 /* Progress of the running quarter, [0, 1]. */
 static float quarter_progress(const saddle_cycle_t *cycle, float x_m)
 {
@@ -371,15 +356,103 @@ static float swing_progress(const saddle_cycle_t *cycle, float progress)
 static void swing_foot(const saddle_cycle_t *cycle, float x_m, saddle_sin_cos_t phase,
                        float progress, saddle_swing_state_t *foot)
 {
-    const float speed_m_s = cycle->profile.speed_m_s;
+    const bool arrived = x_m > cycle->quarter.length_m; /* and late to land */
+    const float speed_m_s = arrived ? 0.0f : cycle->profile.speed_m_s;
     const saddle_swing_place_t place = {
         .progress = progress,
         .rate_hz = 0.5f * speed_m_s / cycle->quarter.length_m,
-        .x_m = x_m,
+        .x_m = arrived ? cycle->quarter.length_m : x_m,
         .speed_m_s = speed_m_s,
         .lateral = saddle_com_lateral(&cycle->quarter, phase),
     };
     saddle_foot_swing(&cycle->swing, &place, foot);
+}
+
+/* The step that the swing foot makes if it lands where it is, and the CoM there. */
+static saddle_vec2_t step_here(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                               place_t *place)
+{
+    const float x_m = cycle->x_m;
+    const saddle_sin_cos_t phase = saddle_quarter_phase(cycle->quarter.length_m, x_m);
+    const place_t reference = reference_at(cycle, model, phase);
+    saddle_swing_state_t foot;
+    *place = place_at(cycle, &reference, x_m);
+    swing_foot(cycle, x_m, phase, swing_progress(cycle, quarter_progress(cycle, x_m)), &foot);
+    return (saddle_vec2_t){foot.position_m.x, foot.position_m.y};
+}
+
+/* Before or after the saddle via point. */
+static void land_here(saddle_cycle_t *cycle, const saddle_model_t *model, float heel_strike_rad)
+{
+    place_t place;
+    const saddle_vec2_t step_m = step_here(cycle, model, &place);
+    const saddle_fixed_t step = saddle_position_from_m(step_m.x);
+    const landing_t landing = {
+        .step_m = step_m,
+        .step_nm = saddle_position_to_nm(step),
+        .behind = step - cycle->position,
+        .behind_m = saddle_position_to_m(step - cycle->position),
+    };
+    begin_step(cycle, model, &landing, &place, cycle->profile.speed_m_s);
+    plan_heel_strike(cycle, model, heel_strike_rad);
+}
+
+/* How far the CoM may go on over the stance foot beyond the planned landing: within reach. */
+static float late_max_m(const saddle_cycle_t *cycle, const saddle_model_t *model)
+{
+    const float within_m = saddle_smaller(LATE_SHARE_MAX * cycle->quarter.length_m,
+                                          model->body.half_step_max_m - cycle->quarter.length_m);
+    return saddle_smaller(model->config.landing_late_s * cycle->profile.speed_m_s, within_m);
+}
+
+/* The swing foot, which was to land, is seen in the air, and the CoM not too far ahead of that yet. */
+static bool waits_for_foot(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                           saddle_fixed_t beyond)
+{
+    return cycle->foot_is_late && saddle_cycle_before_landing(cycle) &&
+           saddle_position_to_m(beyond) <= late_max_m(cycle, model);
+}
+
+uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model,
+                              float heel_strike_rad, uint32_t dt_us, bool *arrived)
+{
+    uint32_t rest_us = 0;
+    *arrived = comes_to_rest(cycle, dt_us, &rest_us);
+    if (*arrived) {
+        rest_beside_foot(cycle);
+        return rest_us;
+    }
+    const saddle_speed_profile_t before = cycle->profile;
+    float distance_m = 0.0f;
+    saddle_fixed_t distance = saddle_profile_advance(&cycle->profile, dt_us);
+    for (int i = 0; i < VIA_POINTS_A_TICK; i++) {
+        const saddle_fixed_t end = saddle_cycle_before_landing(cycle) ? cycle->quarter_length : 0;
+        const saddle_fixed_t to_end = end - cycle->position;
+        if (distance < to_end || (cycle->last_swing && !saddle_cycle_before_landing(cycle)) ||
+            waits_for_foot(cycle, model, distance - to_end)) {
+            break;
+        }
+        if (to_end < 0) { /* it has waited */
+            land_here(cycle, model, heel_strike_rad);
+            continue;
+        }
+        distance -= to_end;
+        distance_m += saddle_position_to_m(to_end);
+        move_to(cycle, end);
+        const saddle_fixed_t speed = saddle_profile_speed_after(&before, distance_m);
+        if (saddle_cycle_before_landing(cycle)) {
+            pass_saddle(cycle, model, speed);
+            plan_heel_strike(cycle, model, heel_strike_rad);
+        } else {
+            pass_foot(cycle, model, speed);
+        }
+    }
+    move_to(cycle, cycle->position + distance);
+    set_phase(cycle, saddle_quarter_phase(cycle->quarter.length_m, cycle->x_m));
+    if (!saddle_cycle_before_landing(cycle) && cycle->position > 0) {
+        rest_beside_foot(cycle);
+    }
+    return 0;
 }
 
 /* Progress of the running swing through the air, in the quarter after a landing. */
@@ -388,11 +461,11 @@ static float air_after_landing(const saddle_cycle_t *cycle, float x_m)
     return 0.5f * (1.0f + x_m / cycle->quarter.length_m) / cycle->swing.land_progress;
 }
 
-/* Can the walk go on from a landing after step_m, with the CoM at com_m from the stance foot? */
-static bool landing_usable(const saddle_cycle_t *cycle, const saddle_model_t *model,
-                           saddle_vec2_t step_m, saddle_vec2_t com_m)
+/* Can the walk go on from a landing of a foot after step_m, with the CoM at com_m from it? */
+static bool landing_usable(const saddle_model_t *model, saddle_side_t foot, saddle_vec2_t step_m,
+                           saddle_vec2_t com_m)
 {
-    const float outward = saddle_outward(cycle->quarter.stance);
+    const float outward = saddle_outward(foot);
     const float reach_m2 = REACH_SHARE * model->body.pendulum_m * model->body.pendulum_m;
     return saddle_in_range(-com_m.x, LANDING_AHEAD_MIN_M, model->body.half_step_max_m) &&
            saddle_in_range(outward * step_m.y, LANDING_WIDTH_MIN_M,
@@ -441,7 +514,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
     place.lateral.value -= dy_m;
     if (x_m < LANDING_STRETCH_MAX * old_x_m ||
         length_m > saddle_larger(model->body.half_step_max_m, cycle->quarter.length_m) ||
-        !landing_usable(cycle, model, step_m, (saddle_vec2_t){x_m, place.lateral.value}) ||
+        !landing_usable(model, stance, step_m, (saddle_vec2_t){x_m, place.lateral.value}) ||
         (x_m > old_x_m && !can_end(cycle, model, -x_m))) {
         return false;
     }
@@ -461,6 +534,21 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
     set_phase(cycle, phase);
     reshape(cycle, model, quarter, phase, &place);
     redirect_swing(cycle, model, swing_m, speed_m_s, phase);
+    return true;
+}
+
+/* [E43] */
+bool saddle_cycle_touch_down(saddle_cycle_t *cycle, const saddle_model_t *model,
+                             float heel_strike_rad)
+{
+    place_t place;
+    const saddle_vec2_t step_m = step_here(cycle, model, &place);
+    const saddle_vec2_t com_m = {cycle->x_m - step_m.x, place.lateral.value - step_m.y};
+    if (!landing_usable(model, saddle_other_side(cycle->quarter.stance), step_m, com_m)) {
+        return false;
+    }
+    land_here(cycle, model, heel_strike_rad);
+    set_phase(cycle, SADDLE_PHASE_LANDED);
     return true;
 }
 

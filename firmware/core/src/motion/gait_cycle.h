@@ -52,6 +52,11 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model
 bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model,
                        saddle_vec2_t step_m) SADDLE_NOINLINE;
 
+/** [E43] The swing foot is on the ground: it carries from now on, where the plan has it, and the CoM goes
+ *  on from where it is. Before a landing only. False, and nothing changes, if no plan can go on so. */
+bool saddle_cycle_touch_down(saddle_cycle_t *cycle, const saddle_model_t *model,
+                             float heel_strike_rad);
+
 /** Whether the running quarter leads to a saddle via point, where the swing foot lands. */
 bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);
 

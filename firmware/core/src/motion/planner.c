@@ -12,6 +12,9 @@
 
 #include <saddlewalk/saddlewalk.h>
 
+/* A landing that is due within this was on time. */
+#define LANDING_TOLERANCE_S 0.002f
+
 /* A last swing, a shift and a first step may follow each other within one long tick. */
 #define MODES_A_TICK 4
 
@@ -96,6 +99,7 @@ static void begin_steps(saddle_planner_t *planner, const saddle_model_t *model)
     planner->mode = (uint8_t)SADDLE_MODE_STARTING;
     planner->shifting = false;
     planner->landing_open = false;
+    planner->foot_lifted = false;
     saddle_cycle_begin(&planner->cycle, model, &start);
     walk_on(planner, model);
 }
@@ -155,6 +159,17 @@ static void choose_profile(saddle_planner_t *planner, const saddle_model_t *mode
     saddle_plan_stop(planner, model);
 }
 
+/* The walk has begun a step. */
+static void after_landing(saddle_planner_t *planner)
+{
+    planner->landing_open = true;
+    planner->foot_lifted = false;
+    planner->cycle.foot_is_late = false;
+    if (planner->mode == (uint8_t)SADDLE_MODE_STARTING) {
+        planner->mode = (uint8_t)SADDLE_MODE_WALKING;
+    }
+}
+
 /* Returns the microseconds left for what follows a last swing. */
 static uint32_t advance_cycle(saddle_planner_t *planner, const saddle_model_t *model,
                               uint32_t dt_us)
@@ -165,10 +180,7 @@ static uint32_t advance_cycle(saddle_planner_t *planner, const saddle_model_t *m
     const uint32_t rest_us =
         saddle_cycle_advance(cycle, model, planner->heel_strike_rad, dt_us, &arrived);
     if (cycle->step_count != steps_before) {
-        planner->landing_open = true;
-        if (planner->mode == (uint8_t)SADDLE_MODE_STARTING) {
-            planner->mode = (uint8_t)SADDLE_MODE_WALKING;
-        }
+        after_landing(planner);
     }
     if (arrived) {
         after_last_swing(planner, model, saddle_cycle_com_y_m(cycle, model));
@@ -241,10 +253,45 @@ uint32_t saddle_planner_join(saddle_planner_t *planner, const saddle_model_t *mo
     return limits;
 }
 
+/* [E43] A foot that is still in the air, when it was to have landed, is waited for; its measurement has an
+ * age. */
+static void watch_swing(saddle_planner_t *planner, const saddle_measurement_t *measured,
+                        uint32_t dt_us)
+{
+    saddle_cycle_t *cycle = &planner->cycle;
+    const saddle_side_t stance = cycle->quarter.stance;
+    const saddle_side_t swing = saddle_other_side(stance);
+    cycle->foot_is_late = false;
+    if (measured == NULL || saddle_stands(planner) || !measured->foot[stance].contact) {
+        return;
+    }
+    const bool in_air = !measured->foot[swing].contact;
+    const float seen_s = 1.0e-6f * ((float)dt_us - (float)measured->foot[swing].age_us);
+    const float way_m = saddle_cycle_distance_to_via_point_m(cycle);
+    planner->foot_lifted = planner->foot_lifted || in_air;
+    cycle->foot_is_late = in_air && saddle_cycle_before_landing(cycle) &&
+                          way_m < cycle->profile.speed_m_s * (seen_s - LANDING_TOLERANCE_S);
+}
+
+/* [E43] A foot that was in the air and is on the ground, a little before its time, carries from now on. */
+static void take_early_landing(saddle_planner_t *planner, const saddle_model_t *model,
+                               const saddle_measurement_t *measured)
+{
+    saddle_cycle_t *cycle = &planner->cycle;
+    const float early_m = model->config.landing_early_s * cycle->profile.speed_m_s;
+    if (measured != NULL && planner->foot_lifted && saddle_cycle_before_landing(cycle) &&
+        measured->foot[saddle_other_side(cycle->quarter.stance)].contact &&
+        saddle_cycle_distance_to_via_point_m(cycle) <= early_m &&
+        saddle_cycle_touch_down(cycle, model, planner->heel_strike_rad)) {
+        after_landing(planner);
+    }
+}
+
 uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_model_t *model,
                                const saddle_command_t *command,
                                const saddle_measurement_t *measured, uint32_t dt_us)
 {
+    watch_swing(planner, measured, dt_us);
     saddle_planner_advance(planner, model, dt_us);
     uint32_t limits = apply_command(planner, model, command);
     if (planner->mode == (uint8_t)SADDLE_MODE_STANDING) {
@@ -252,6 +299,7 @@ uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_model_t *
                (planner->speed_m_s > 0.0f ? saddle_start_walk(planner, model, measured) : 0u);
     }
     if (!planner->shifting) {
+        take_early_landing(planner, model, measured);
         limits |= take_landing(planner, model, measured);
         choose_profile(planner, model);
     }

@@ -116,6 +116,7 @@ typedef struct {
     float sin_phase, cos_phase; /**< of the phase angle there, com_path.h */
     saddle_quarter_t quarter;
     uint8_t phase;         /**< 0 to 3; even: towards the saddle via point */
+    bool foot_is_late;     /**< the swing foot was to have landed and is seen in the air */
     bool last_swing;       /**< the running step ends beside the stance foot: a stop */
     uint32_t step_count;   /**< changes of the stance foot */
     uint32_t stride_count; /**< times that phase 0 was entered again */
@@ -140,6 +141,7 @@ typedef struct {
     saddle_vec2_t shift_from_m, shift_to_m; /**< CoM from the stance CoP */
     saddle_vec2_t other_m; /**< the other foot, from the stance CoP, while both stand */
     uint8_t start_phase;   /**< where the cycle begins after the shift */
+    bool foot_lifted;      /**< the swing foot was seen in the air in this swing */
     bool landing_open;     /**< the last landing has not been compared with the measured one */
     saddle_cycle_t cycle;
 } saddle_planner_t;
