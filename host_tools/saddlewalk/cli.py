@@ -11,7 +11,6 @@ from typing import NoReturn
 from saddlewalk import __version__, commands
 from saddlewalk.errors import UserError
 from saddlewalk.outputs import check_files
-from saddlewalk.paths import need_checkout
 from saddlewalk.printable import printable
 
 
@@ -55,7 +54,6 @@ def main(argv: list[str] | None = None) -> int:
     try:
         if sys.stdout is None:
             raise UserError("standard output is closed: give one, such as /dev/null")
-        need_checkout()
         check_files(args.parser, args)
         status = args.run(args)
         sys.stdout.flush()

@@ -9,7 +9,7 @@ from typing import Any
 import cffi
 
 from saddlewalk.errors import UserError
-from saddlewalk.paths import CHECKOUT, built, need_checkout
+from saddlewalk.paths import built, source
 
 AGE_NEVER_US = 0xFFFFFFFF  # SADDLE_AGE_NEVER_US
 
@@ -29,8 +29,7 @@ def library() -> Any:
 
 def defined(name: str, header: str = "core/include/saddlewalk/types.h") -> float:
     """The value of a macro in a header, which cffi does not read."""
-    need_checkout()
-    text = (CHECKOUT / "firmware" / header).read_text()
+    text = source(f"firmware/{header}").read_text()
     (number,) = re.findall(rf"^#define {name} ([0-9.]+)[fu]?$", text, re.MULTILINE)
     return float(number)
 

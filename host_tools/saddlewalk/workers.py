@@ -16,10 +16,11 @@ from typing import Any, TypeVar
 
 from saddlewalk import __version__
 from saddlewalk.errors import UserError
-from saddlewalk.paths import CHECKOUT, install_command
+from saddlewalk.paths import CHECKOUT, PACKAGE, in_checkout, install_command
 
 CONNECT_TIMEOUT_S = 10
 SOURCES = ("firmware/**/*.[ch]", "firmware/**/*.dbc", "host_tools/saddlewalk/**/*.py")
+SHIPPED_SOURCES = ("shipped/build/lib/*.so", "shipped/firmware/**/*.dbc", "**/*.py")
 
 Result = TypeVar("Result")
 Completed = Generator[tuple[int, list[Result]], None, None]  # a task's index and its results
@@ -156,6 +157,7 @@ def _results(found: bytes | str) -> Any:
 def identity() -> str:
     """Version and a hash of the sources that decide results."""
     digest = hashlib.sha256()
-    for path in sorted(path for pattern in SOURCES for path in CHECKOUT.glob(pattern)):
-        digest.update(path.relative_to(CHECKOUT).as_posix().encode() + b"\0" + path.read_bytes())
+    root, patterns = (CHECKOUT, SOURCES) if in_checkout() else (PACKAGE, SHIPPED_SOURCES)
+    for path in sorted(path for pattern in patterns for path in root.glob(pattern)):
+        digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
     return f"{__version__} (sources {digest.hexdigest()[:8]})"

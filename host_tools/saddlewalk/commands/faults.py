@@ -65,14 +65,14 @@ def run(args: argparse.Namespace) -> int:
 
     from saddlewalk.faults.campaign import rows_of
     from saddlewalk.faults.scenario import read_scenario
-    from saddlewalk.paths import CHECKOUT
+    from saddlewalk.paths import source
     from saddlewalk.physics.plants import chosen_plant
 
     plant = chosen_plant(args)
     if plant.is_mujoco and args.live:
         raise UserError(f"--live: walks in real time, not with --plant {args.plant}")
     config = load_config(args, body=plant.fields)
-    scenario = read_scenario(args.scenario or CHECKOUT / "examples/faults.toml")
+    scenario = read_scenario(args.scenario or source("examples/faults.toml"))
     console = Console(width=None if sys.stdout.isatty() else FILE_WIDTH)
     outcomes = _in_lockstep(args, scenario, config, plant)
     console.print(_table(rows_of(outcomes), "In lockstep"))

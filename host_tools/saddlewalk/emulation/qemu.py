@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from saddlewalk.errors import UserError
-from saddlewalk.paths import CHECKOUT
+from saddlewalk.paths import CHECKOUT, in_checkout
 from saddlewalk.transport.slcan import SlcanBus
 
 MACHINE = "mps2-an386"
@@ -80,6 +80,8 @@ def settings_page(config: Any, clock: str) -> bytes:
 
 def missing() -> str:
     """What is missing to run a controller, with the remedy; empty if nothing is."""
+    if not in_checkout():
+        return "its image is built in a checkout of the project, by `make controller`"
     if shutil.which(_EMULATOR) is None:
         return f"{_EMULATOR} is missing: as root, apt-get install -y qemu-system-arm"
     if IMAGE.exists():

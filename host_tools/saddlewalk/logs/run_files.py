@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from saddlewalk.paths import CHECKOUT
+from saddlewalk.paths import source
 
 LCM_LOG, CAN_LOG, TABLE, PICTURE = "walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"
 STRIP, FILM = "body.png", "body.gif"  # of a body in MuJoCo
@@ -11,7 +11,7 @@ TABLE_FORMATS = ("csv", "parquet")
 
 def table_names(form: str) -> tuple[str, ...]:
     """Of the tables of a log in a folder, one for each LCM type."""
-    types = sorted((CHECKOUT / "lcm_types").glob("*_t.lcm"))
+    types = sorted(source("lcm_types").glob("*_t.lcm"))
     return tuple(f"{path.stem.removesuffix('_t')}.{form}" for path in types)
 
 

@@ -4,9 +4,9 @@ import re
 from dataclasses import dataclass
 
 from saddlewalk.errors import UserError
-from saddlewalk.paths import CHECKOUT
+from saddlewalk.paths import source
 
-PAGE = CHECKOUT / "docs/equations.md"
+PAGE = source("docs/equations.md")
 MARK = "*reading*"
 _ROW = re.compile(r"\| \[(?P<tag>E\d+)\] \| (?P<equation>.+) \| (?P<label>.+) \| (?P<words>.+) \|")
 

@@ -24,7 +24,7 @@ def types_jar() -> Path:
     Raises UserError if the Java development kit is missing.
     """
     jar = paths.build_dir().absolute() / "lcm" / "java" / "saddlewalk.jar"
-    types = sorted((paths.CHECKOUT / "lcm_types").glob("*.lcm"))
+    types = sorted(paths.source("lcm_types").glob("*.lcm"))
     newest_s = max(path.stat().st_mtime for path in types)
     if not jar.exists() or jar.stat().st_mtime < newest_s:
         _make(jar, types)

@@ -21,7 +21,7 @@ COUNTER_STEP_MAX = 4
 NOT_AVAILABLE = -32768
 _RAW_MAX = 32767
 
-_database = cantools.database.load_file(paths.CHECKOUT / "firmware/wire/saddlewalk.dbc")
+_database = cantools.database.load_file(paths.source("firmware/wire/saddlewalk.dbc"))
 assert isinstance(_database, cantools.database.can.Database)
 WIRE_VERSION = int(str(_database.version))
 
