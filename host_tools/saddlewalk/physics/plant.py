@@ -12,7 +12,6 @@ from saddlewalk.physics.body import TIMESTEP_S, Body
 POSE_ITERATIONS, POSE_STEP_MAX, POSE_TOLERANCE = 200, 0.2, 1e-4
 POSE_DAMPING = 1e-4
 KNEE_BEND_RAD = 0.5  # where the search for a pose begins
-LOADED_MIN_N = 1.0  # below, a foot has no CoP
 
 
 class Plant:
@@ -22,7 +21,6 @@ class Plant:
         self.body, self.model = body, body.model
         self.data = mujoco.MjData(self.model)
         self.loads_n = [0.0, 0.0]
-        self.cops_m: list[complex] = [0j, 0j]
         steps = round(torque_delay_s / TIMESTEP_S)
         self._torques = deque([np.zeros(self.model.nu)] * (steps + 1), maxlen=steps + 1)
         self._feet = [self.model.body(leg.foot).id for leg in body.legs]
@@ -111,17 +109,12 @@ class Plant:
         mujoco.mj_subtreeVel(self.model, self.data)
 
     def _weigh(self) -> None:
-        """Load and CoP of each foot, from the contacts of the step that was just made."""
+        """Load of each foot, from the contacts of the step that was just made."""
         contacts, forces_n = self.data.contact, self.data.efc_force
         soles = self._foot_of_geom[contacts.geom].max(axis=1)  # the floor's is -1
-        for side in (LEFT, RIGHT):
-            mine = np.flatnonzero((soles == side) & (contacts.efc_address >= 0))
-            normal_n = forces_n[contacts.efc_address[mine]]
-            self.loads_n[side] = float(normal_n.sum())
-            place_m = self.sole_m(side)
-            if self.loads_n[side] > LOADED_MIN_N:
-                place_m = normal_n @ contacts.pos[mine] / self.loads_n[side]
-            self.cops_m[side] = complex(place_m[0], place_m[1])
+        address = contacts.efc_address
+        normal_n = np.where(address >= 0, forces_n[address], 0.0) if len(address) else address
+        self.loads_n = [float(normal_n[soles == side].sum()) for side in (LEFT, RIGHT)]
 
 
 def _to_level(quaternion: np.ndarray) -> np.ndarray:
