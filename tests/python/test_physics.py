@@ -269,3 +269,46 @@ def test_a_film_shows_the_body_or_names_what_is_missing(tmp_path):
     with Image.open(tmp_path / "body.gif") as pictures:
         assert pictures.n_frames == 2 and pictures.info["duration"] == 40
         assert len(pictures.getcolors(1000) or range(99)) > 10
+
+
+@needs_mujoco
+def test_a_body_walks_through_the_fault_campaign(tmp_path):
+    """Without a fault, so that it gets the plans of the firmware's own tick and between them."""
+    from saddlewalk.faults.campaign import run
+    from saddlewalk.faults.scenario import read_scenario
+
+    text = "[walk]\nspeed_m_s = [0.7, 0.7]\nduration_s = 4.0\n"
+    text += '[[fault]]\nclass = "none"\nstrength = 0\nfrom_s = [1.0, 2.0]\nfor_s = 1.0\n'
+    (tmp_path / "none.toml").write_text(text)
+    plant = PlantChoice("winter")
+    scenario = read_scenario(tmp_path / "none.toml")
+    outcome, history = run(scenario, 0, 0, 1, configuration(plant.fields), plant)
+    assert not outcome.fell and not outcome.violations
+    assert len(history) == 50
+
+
+def test_walks_without_exact_inputs_are_shown_with_noise_alone():
+    """As those of a body, which walks once."""
+    from saddlewalk.evaluation.side_by_side import tables, walker_figures
+    from saddlewalk.evaluation.walks import Trial, evaluated_walk, run
+
+    trial = Trial("recovery", 0, -1, 1.0, 90.0, 3.0, 30.0, 5)
+    config = configuration({})
+    walk = evaluated_walk(trial, run(trial, config), None)
+    assert set(walk.scores) == {"noise"}
+    results = {"winter_recovery": walker_figures(walk.scores, {})}
+    assert tables(results, "exact") == []
+    assert [table.row_count > 5 for table in tables(results, "noise")] == [True, True]
+
+
+@needs_mujoco
+def test_a_pushed_walk_of_a_body_is_evaluated_at_its_speeds():
+    from saddlewalk.evaluation.walks import Trial, draw, run
+
+    speeds = [draw(1, k, "recovery", 63.3, (0.6, 1.2)).speed_m_s for k in range(40)]
+    assert 0.6 <= min(speeds) < 0.75 and 1.05 < max(speeds) <= 1.2
+    plant = PlantChoice("winter")
+    trial = Trial("planned", 0, -1, 0.8, 90.0, 3.0, 60.0, 5)
+    course = run(trial, configuration(plant.fields), plant=plant)
+    assert 3.0 < course.fell_at_s < 5.0
+    assert course.ticks["time_s"][-1] < course.fell_at_s
