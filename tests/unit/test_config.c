@@ -184,6 +184,14 @@ static void test_reach_that_lays_the_pendulum_flat_is_named(void)
     TEST_ASSERT_EQUAL_STRING("peak_speed_m_s", saddle_config_check(&config));
 }
 
+static void test_swing_that_comes_all_but_at_once_is_named(void)
+{
+    config.swing_skew = 0.29f;
+    TEST_ASSERT_EQUAL_STRING("swing_skew", saddle_config_check(&config));
+    config.swing_skew = 0.3f;
+    TEST_ASSERT_NULL(saddle_config_check(&config));
+}
+
 static void test_path_that_lays_the_pendulum_flat_is_named(void)
 {
     config.peak_speed_m_s = 3.9f;
@@ -221,6 +229,7 @@ int main(void)
     RUN_TEST(test_half_step_out_of_reach_is_named);
     RUN_TEST(test_configuration_without_a_feasible_walk_is_named);
     RUN_TEST(test_reach_that_lays_the_pendulum_flat_is_named);
+    RUN_TEST(test_swing_that_comes_all_but_at_once_is_named);
     RUN_TEST(test_path_that_lays_the_pendulum_flat_is_named);
     RUN_TEST(test_longer_side_that_does_not_reach_its_shortest_step_is_named);
     return UNITY_END();

@@ -90,6 +90,12 @@ static double erf_reference(double x)
     return erf(x);
 }
 
+/** 0 where there is none, as saddle_log() says. */
+static double log_reference(double x)
+{
+    return x < (double)FLT_MIN ? 0.0 : log(x);
+}
+
 /** Keeps the largest error / unit and where it was; divides only when there is a larger one. */
 static void note_error(worst_t *worst, double error, double unit, float x)
 {
@@ -214,6 +220,18 @@ static const promise_t EXP = {
     .relative_bound = 8.3e-8,
 };
 
+static const promise_t LOG = {
+    .function = saddle_log,
+    .reference = log_reference,
+    .lowest = 0.0f,
+    .highest = FLT_MAX,
+    .symmetry = NO_SYMMETRY,
+    .least_result = -87.4f,
+    .greatest_result = 88.8f,
+    .absolute_bound = 5.0e-6,
+    .relative_bound = 2.0e-7,
+};
+
 static const promise_t MIN_JERK = {
     .function = saddle_min_jerk,
     .reference = min_jerk_reference,
@@ -300,6 +318,15 @@ static void test_exp(void)
     expect_outside(saddle_exp, 88.0f, 0.0f, EXP_GREATEST, 0.0f);
 }
 
+static void test_log(void)
+{
+    walk(&LOG);
+    expect_result(saddle_log, 1.0f, 0.0f);
+    expect_result(saddle_log, -1.0f, 0.0f);
+    expect_result(saddle_log, INFINITY, 0.0f);
+    expect_result(saddle_log, NAN, 0.0f);
+}
+
 static void test_min_jerk(void)
 {
     walk(&MIN_JERK);
@@ -354,10 +381,13 @@ static const struct {
     const char *name;
     void (*run)(void);
 } TESTS[] = {
-    {"sin", test_sin},     {"cos", test_cos},           {"sin_cos", test_sin_cos},
-    {"asin", test_asin},   {"erf", test_erf},           {"erf_saturation", test_erf_saturation},
-    {"exp", test_exp},     {"min_jerk", test_min_jerk}, {"min_jerk_slope", test_min_jerk_slope},
-    {"clamp", test_clamp}, {"in_range", test_in_range}, {"ends", test_ends},
+    {"sin", test_sin},           {"cos", test_cos},
+    {"sin_cos", test_sin_cos},   {"asin", test_asin},
+    {"erf", test_erf},           {"erf_saturation", test_erf_saturation},
+    {"exp", test_exp},           {"log", test_log},
+    {"min_jerk", test_min_jerk}, {"min_jerk_slope", test_min_jerk_slope},
+    {"clamp", test_clamp},       {"in_range", test_in_range},
+    {"ends", test_ends},
 };
 
 int main(int argc, char **argv)

@@ -9,7 +9,8 @@ static saddle_swing_state_t foot_at(const saddle_swing_t *line, float progress, 
                                     saddle_sample_t lateral, float speed_m_s, float rate_hz)
 {
     saddle_swing_state_t foot;
-    const saddle_swing_place_t place = {progress, rate_hz, x_m, speed_m_s, lateral};
+    const saddle_swing_place_t place = {progress, rate_hz, speed_m_s,
+                                        saddle_swing_line(line, x_m, lateral)};
     saddle_foot_swing(line, &place, &foot);
     return foot;
 }
@@ -148,9 +149,72 @@ static void test_foot_leaves_where_it_stood_and_lands_on_the_line_both_at_rest(v
                       foot_at(&swing, 0.5f, 0.0f, lateral, 0.0f, 1.7f).position_m.z);
 }
 
+static const struct {
+    double begin, end, skew;
+} WAYS[] = {
+    {-0.32, 1.04, 1.47}, {0.0, 1.0, 1.0}, {-1.0, 2.0, 4.0}, {0.4, 0.6, 0.3}, {0.15, 1.2, 0.9}};
+
+static saddle_swing_profile_t profile_of(size_t i)
+{
+    saddle_config_t config = paper_config();
+    config.swing_begin = (float)WAYS[i].begin;
+    config.swing_end = (float)WAYS[i].end;
+    config.swing_skew = (float)WAYS[i].skew;
+    TEST_ASSERT_NULL(saddle_config_check(&config));
+    return model_of(&config)->body.swing;
+}
+
+static double share_at(size_t i, double progress)
+{
+    const double length = WAYS[i].end - WAYS[i].begin;
+    const double s = fmin(fmax((progress - WAYS[i].begin) / length, 0.0), 1.0);
+    return min_jerk(pow(s, WAYS[i].skew));
+}
+
+static void test_share_of_a_person_s_way_and_its_slope(void)
+{
+    for (size_t i = 0; i < COUNT_OF(WAYS); i++) {
+        const saddle_swing_profile_t profile = profile_of(i);
+        for (int k = 0; k <= 1000; k++) {
+            const double p = 0.001 * k;
+            const double h = 1e-6;
+            const double slope = (share_at(i, p + h) - share_at(i, p - h)) / (2.0 * h);
+            const saddle_jerk_t share = saddle_swing_share(&profile, (float)p);
+            /* Float progress, on a slope of up to 20 in a way that begins late. */
+            TEST_ASSERT_DOUBLE_WITHIN(5e-6, share_at(i, p) / share_at(i, 1.0), share.value);
+            if (fabs(p - WAYS[i].begin) > 0.01 && fabs(p - WAYS[i].end) > 0.01) {
+                TEST_ASSERT_DOUBLE_WITHIN(1e-3, slope / share_at(i, 1.0), share.slope);
+            }
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1.2e-7, 1.0, saddle_swing_share(&profile, 1.0f).value);
+    }
+}
+
+/* What the new step's length changes at the foot via point fades out until the landing. */
+static void test_stretch_fades_out_in_the_second_half(void)
+{
+    const saddle_sample_t beside = {-0.037f, 0.0f};
+    swing.stretch_m = 0.02f;
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.02,
+                              foot_at(&swing, 0.5f, 0.0f, beside, 0.0f, 1.7f).position_m.x);
+    for (int k = 1; k < 100; k++) {
+        const double p = 0.5 + 0.005 * k;
+        const saddle_swing_state_t foot = foot_at(&swing, (float)p, 0.0f, beside, 0.0f, 1.7f);
+        const double h = 1e-6;
+        const double rate =
+            (min_jerk(2.0 * (p - h) - 1.0) - min_jerk(2.0 * (p + h) - 1.0)) / (2 * h);
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.02 * (1.0 - min_jerk(2.0 * p - 1.0)),
+                                  foot.position_m.x);
+        TEST_ASSERT_DOUBLE_WITHIN(6e-6, 1.7 * 0.02 * rate, foot.velocity_m_s.x);
+    }
+    ASSERT_SAME_FLOAT(0.0f, foot_at(&swing, 1.0f, 0.0f, beside, 0.0f, 1.7f).position_m.x);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_share_of_a_person_s_way_and_its_slope);
+    RUN_TEST(test_stretch_fades_out_in_the_second_half);
     RUN_TEST(test_foot_lies_on_the_line_through_stance_and_com);
     RUN_TEST(test_foot_passes_behind_beside_and_ahead);
     RUN_TEST(test_foot_follows_the_path_s_width_to_any_line);

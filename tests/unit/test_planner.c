@@ -258,6 +258,36 @@ static void test_shape_is_in_the_steady_plan(void)
     }
 }
 
+/* From behind the stance foot, where it stood until the last landing, to ahead of it. */
+static void test_swing_of_a_person_is_in_the_steady_plan(void)
+{
+    config.swing_begin = -0.32f;
+    config.swing_end = 1.04f;
+    config.swing_skew = 1.47f;
+    for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
+        const walk_t walk = walk_at((double)SPEEDS[i]);
+        const double s_end = pow(1.32 / 1.36, 1.47);
+        const double s_lift = pow(0.32 / 1.36, 1.47);
+        const double full = pow(s_end, 3) * (10.0 + s_end * (6.0 * s_end - 15.0));
+        const double lift = pow(s_lift, 3) * (10.0 + s_lift * (6.0 * s_lift - 15.0)) / full;
+        join(SPEEDS[i]);
+        for (double t = 0.0; t < 4.2 * walk.step_time; t += 0.008) {
+            const double step = t / walk.step_time + 0.5;
+            const double p = step - floor(step);
+            const double s = pow((p + 0.32) / 1.36, 1.47);
+            const double share = pow(s, 3) * (10.0 + s * (6.0 * s - 15.0)) / full;
+            const double f = fmin(2.0 * p, 1.0);
+            const double rest = 1.0 - pow(f, 3) * (10.0 + f * (6.0 * f - 15.0));
+            const double x =
+                walk.step * (2.0 * (share - lift * (t < 0.5 * walk.step_time ? 0.0 : rest)) - 1.0);
+            if (p > 1e-4 && p < 1.0 - 1e-4) {
+                TEST_ASSERT_DOUBLE_WITHIN(3.0 * TOLERANCE, x, plan.foot_m[1 - plan.support].x);
+            }
+            TEST_ASSERT_EQUAL_HEX32(0, tick(8000));
+        }
+    }
+}
+
 static void test_heel_strikes_at_its_share_of_a_step(void)
 {
     config.strike_share = 0.36f;
@@ -935,6 +965,7 @@ int main(void)
     RUN_TEST(test_vertical_excursion_is_the_model_page_s);
     RUN_TEST(test_cycloid_excursion_is_delta_z_and_the_ankle_is_real_everywhere);
     RUN_TEST(test_shape_is_in_the_steady_plan);
+    RUN_TEST(test_swing_of_a_person_is_in_the_steady_plan);
     RUN_TEST(test_heel_strikes_at_its_share_of_a_step);
     RUN_TEST(test_cycloid_that_no_ankle_can_give_is_said);
     RUN_TEST(test_toe_off_limit_is_said);

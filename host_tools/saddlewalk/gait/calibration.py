@@ -89,6 +89,7 @@ def _shapes(walks: Sequence[WalkMeasures], fits: Sequence[Fit]) -> dict[str, lis
     return {
         "com_y_m": sway,
         "com_z_m": shape.height(steps([*fits, sway[0]])),
+        "swing_x_m": shape.swing(steps(fits)),
         "heel_strike_s": shape.strike(steps(fits)),
     }
 

@@ -173,7 +173,7 @@ def strike(steps: Sequence[TimedStep]) -> list[Fit]:
 
 
 def swing(steps: Sequence[TimedStep]) -> list[Fit]:
-    """When the foot begins and ends to move along x, and how late it does the most of it, [E39]."""
+    """When the foot begins and ends to move along x, and how late it does the most of it, [E44]."""
     samples = [_swing_samples(step) for step in steps]
     progress, x_m, length_m = np.concatenate([np.empty((3, 0)), *samples], axis=1)
     population = _unknown("swing", SWING)
@@ -190,8 +190,13 @@ def swing(steps: Sequence[TimedStep]) -> list[Fit]:
 
 
 def swing_profile(progress: np.ndarray, begin: float, end: float, skew: float) -> np.ndarray:
-    s = np.clip((progress - begin) / (end - begin), 0, 1) ** skew
-    return np.asarray(s**3 * (10 + s * (6 * s - 15)))
+    """Share of the way; 1 where the swing ends."""
+
+    def reached(at: np.ndarray) -> np.ndarray:
+        s = np.clip((at - begin) / (end - begin), 0, 1) ** skew
+        return np.asarray(s**3 * (10 + s * (6 * s - 15)))
+
+    return reached(progress) / reached(np.ones(1))
 
 
 def _swing_samples(step: TimedStep) -> np.ndarray:

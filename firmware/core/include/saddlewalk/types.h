@@ -72,7 +72,10 @@ typedef struct {
     float step_length_factor_right;
     float step_width_factor_left; /**< left foot to the walking line; 1: symmetric, [E3] */
     float step_width_factor_right;
-    float swing_clearance_m;    /**< height of the swing foot at mid-swing, [E10] */
+    float swing_clearance_m; /**< height of the swing foot at mid-swing, [E10] */
+    float swing_begin; /**< where the swing foot's way along x begins, in swings since lift-off; */
+    float swing_end;   /**< where it ends; */
+    float swing_skew;  /**< and how late it comes; 0: the line through stance foot and CoM, [E44] */
     float double_support_share; /**< of a step, after its landing: both feet carry, [E39] */
     float cop_enter;            /**< where the CoP enters a foot, of cop_range_m, */
     float cop_leave;            /**< and where it leaves it, [E39] */

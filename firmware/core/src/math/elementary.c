@@ -43,6 +43,16 @@ static const float ERF[] = {
     -2.05717748e-04f, -1.25174515e-03f, 3.81000049e-04f,  -4.07078333e-05f,
 };
 
+/* ln m = 2 s + 2 s z L(z), s = (m - 1)/(m + 1), z = s^2, sqrt(1/2) <= m < sqrt(2): the series of the
+ * inverse hyperbolic tangent, whose next term is at most 8e-10 of it */
+static const float LOG[] = {
+    3.33333333e-01f, 2.00000000e-01f, 1.42857143e-01f, 1.11111111e-01f, 9.09090909e-02f,
+};
+
+static const float SMALLEST_NORMAL = 1.17549435e-38f;
+static const float GREATEST = 3.40282347e+38f;
+static const uint32_t ONE_BITS = 0x3F800000u;
+static const uint32_t SQRT_HALF_BITS = 0x3F3504F3u;
 static const float EXP_LOWEST = -87.0f;
 static const float EXP_HIGHEST = 88.0f;
 static const float ERF_SATURATION = 4.0f;
@@ -146,6 +156,25 @@ float saddle_exp(float x)
     }
     const exp_parts_t e = exp_parts(x > EXP_HIGHEST ? EXP_HIGHEST : x);
     return e.scale * (1.0f + e.fraction);
+}
+
+float saddle_log(float x)
+{
+    if (!saddle_in_range(x, SMALLEST_NORMAL, GREATEST)) {
+        return 0.0f;
+    }
+    union {
+        float value;
+        uint32_t bits;
+    } mantissa = {x};
+    const uint32_t biased_exponent = (mantissa.bits + (ONE_BITS - SQRT_HALF_BITS)) >> 23;
+    mantissa.bits -= (biased_exponent << 23) - ONE_BITS;
+    const float k = (float)((int32_t)biased_exponent - 127);
+    const float f = mantissa.value - 1.0f;
+    const float s = f / (2.0f + f);
+    const float z = s * s;
+    const float poly = (((LOG[4] * z + LOG[3]) * z + LOG[2]) * z + LOG[1]) * z + LOG[0];
+    return k * LN2_HI + (2.0f * s + (2.0f * s * z * poly + k * LN2_LO));
 }
 
 float saddle_erf(float x)

@@ -6,6 +6,9 @@
 
 #define WIDTH_MIN_M 0.01f
 
+/* A foot that comes earlier would almost jump where its way begins. */
+#define SKEW_MIN 0.3f
+
 /* Some walk must be feasible: the ceiling lies above this speed, twice the planner's floor. */
 #define CEILING_MIN_M_S 0.02f
 
@@ -42,6 +45,9 @@ static const saddle_config_field_t FIELDS[] = {
     FIELD(step_width_factor_left, 0.5f, 2.0f),
     FIELD(step_width_factor_right, 0.5f, 2.0f),
     FIELD(swing_clearance_m, 0.0f, 0.3f),
+    FIELD(swing_begin, -1.0f, 0.4f),
+    FIELD(swing_end, 0.6f, 2.0f),
+    FIELD(swing_skew, 0.0f, 4.0f),
     FIELD(double_support_share, 0.02f, 0.5f),
     FIELD(cop_enter, -1.0f, 1.0f),
     FIELD(cop_leave, -1.0f, 1.0f),
@@ -122,6 +128,9 @@ saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg)
         .step_width_factor_left = 1.0f,
         .step_width_factor_right = 1.0f,
         .swing_clearance_m = 0.05f,
+        .swing_begin = 0.0f,
+        .swing_end = 1.0f,
+        .swing_skew = 0.0f,
         .double_support_share = 0.16f,
         .cop_enter = -0.2f,
         .cop_leave = 0.8f,
@@ -245,6 +254,9 @@ const char *saddle_config_check(const saddle_config_t *config)
     }
     if ((unsigned)config->ankle >= (unsigned)SADDLE_ANKLE_COUNT) {
         return "ankle";
+    }
+    if (config->swing_skew > 0.0f && config->swing_skew < SKEW_MIN) {
+        return "swing_skew";
     }
     if (config->tolerance_min > config->tolerance_max) {
         return "tolerance_min";

@@ -102,6 +102,20 @@ static void derive_shape(const saddle_config_t *config, saddle_body_t *body)
     body->leg_m = flat_leg_m(config, body);
 }
 
+/* [E44] */
+static void derive_swing(const saddle_config_t *config, saddle_body_t *body)
+{
+    const float rate = 1.0f / (config->swing_end - config->swing_begin);
+    const float end = saddle_clamp((1.0f - config->swing_begin) * rate, 0.0f, 1.0f);
+    const float late = saddle_exp(config->swing_skew * saddle_log(end));
+    body->swing = (saddle_swing_profile_t){
+        .begin = config->swing_begin,
+        .rate = rate,
+        .skew = config->swing_skew,
+        .scale = 1.0f / saddle_min_jerk(late),
+    };
+}
+
 static void derive_stop(const saddle_config_t *config, saddle_body_t *body)
 {
     body->crawl_m_s = crawl_m_s(config, body);
@@ -133,6 +147,7 @@ void saddle_model_init(saddle_model_t *model, const saddle_config_t *config)
     saddle_copy(&model->config, config, sizeof *config);
     derive_walk(config, &model->body);
     derive_shape(config, &model->body);
+    derive_swing(config, &model->body);
     derive_stop(config, &model->body);
     derive_balance(config, &model->body);
     derive_times(config, &model->body);

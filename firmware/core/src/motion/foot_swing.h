@@ -1,6 +1,8 @@
-/** The swing foot: its CoP stays on the line through the stance CoP and the CoM. */
+/** The swing foot: its CoP stays on the line through the stance CoP and the CoM, or goes a person's way. */
 #ifndef SADDLEWALK_FOOT_SWING_H
 #define SADDLEWALK_FOOT_SWING_H
+
+#include "math/elementary.h"
 
 #include <saddlewalk/private/context.h>
 
@@ -14,11 +16,15 @@ typedef struct {
  *  reference. */
 saddle_sample_t saddle_swing_line(const saddle_swing_t *swing, float x_m, saddle_sample_t lateral);
 
+/** [E44] A person's share of the way from behind the stance foot to ahead of it, and its change with
+ *  the swing's progress: 1 at its end. */
+saddle_jerk_t saddle_swing_share(const saddle_swing_profile_t *profile, float progress);
+
 /** Where a swing is. */
 typedef struct {
     float progress, rate_hz; /**< its rate of change */
-    float x_m, speed_m_s;    /**< of the CoM */
-    saddle_sample_t lateral; /**< its reference */
+    float speed_m_s;         /**< of the CoM */
+    saddle_sample_t way;     /**< along x, and its change with the CoM's */
 } saddle_swing_place_t;
 
 /** [E9] [E10] The foot. */

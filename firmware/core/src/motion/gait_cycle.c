@@ -132,12 +132,27 @@ static void reshape(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_q
     }
 }
 
+/* The swing foot's way along x at a phase, [E9] or [E44], and its change with the CoM's. The last swing
+ * ends beside the stance foot, where only the line leads. */
+static saddle_sample_t swing_way(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                                 float x_m, saddle_sin_cos_t phase)
+{
+    const bool last = cycle->last_swing && !saddle_cycle_before_landing(cycle);
+    if (last || model->config.swing_skew <= 0.0f) {
+        return saddle_swing_line(&cycle->swing, x_m, saddle_com_lateral(&cycle->quarter, phase));
+    }
+    const float half_m = cycle->quarter.length_m;
+    const saddle_jerk_t share = saddle_swing_share(&model->body.swing, 0.5f + 0.5f * x_m / half_m);
+    return (saddle_sample_t){2.0f * half_m * (2.0f * share.value - 1.0f), 2.0f * share.slope};
+}
+
 /* The foot via point: the next step's length follows from the speed now. Every mismatch has gone. */
 static void pass_foot(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_fixed_t speed)
 {
     const saddle_side_t stance = cycle->quarter.stance;
     const float speed_m_s = saddle_speed_to_m_s(speed);
     const place_t actual = reference_at(cycle, model, SADDLE_PHASE_FOOT);
+    const float old_half_m = cycle->quarter.length_m;
     cycle->phase = (uint8_t)((cycle->phase + 1u) % 4u);
     cycle->stride_count += cycle->phase == 0u ? 1u : 0u;
     cycle->quarter_length = saddle_half_step(model, saddle_other_side(stance), speed);
@@ -145,6 +160,10 @@ static void pass_foot(saddle_cycle_t *cycle, const saddle_model_t *model, saddle
             saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
                            saddle_magnitude(cycle->swing.line_y_m), speed_m_s),
             SADDLE_PHASE_FOOT, &actual);
+    if (model->config.swing_skew > 0.0f) {
+        const float share = 2.0f * saddle_swing_share(&model->body.swing, 0.5f).value - 1.0f;
+        cycle->swing.stretch_m = 2.0f * (old_half_m - cycle->quarter.length_m) * share;
+    }
 }
 
 /* The line on which the next swing foot travels, from the new stance CoP: at its place beside the
@@ -170,10 +189,9 @@ static void lift_off(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_
     swing->land_progress = cycle->last_swing ? 0.5f : 1.0f;
     swing->clearance_m = model->config.swing_clearance_m;
     swing->line_y_m = swing_line_y_m(cycle, model, foot, speed_m_s);
-    const saddle_sample_t line =
-        saddle_swing_line(swing, cycle->x_m, saddle_com_lateral(&cycle->quarter, phase));
-    swing->offset_m.x = lifted_m.x - line.value;
+    swing->offset_m.x = lifted_m.x - swing_way(cycle, model, cycle->x_m, phase).value;
     swing->offset_m.y = lifted_m.y - swing->line_y_m;
+    swing->stretch_m = 0.0f;
 }
 
 static float shaping_speed_m_s(const saddle_cycle_t *cycle)
@@ -353,17 +371,16 @@ static float swing_progress(const saddle_cycle_t *cycle, float progress)
     return 0.5f * progress + (saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f);
 }
 
-static void swing_foot(const saddle_cycle_t *cycle, float x_m, saddle_sin_cos_t phase,
-                       float progress, saddle_swing_state_t *foot)
+static void swing_foot(const saddle_cycle_t *cycle, const saddle_model_t *model, float x_m,
+                       saddle_sin_cos_t phase, saddle_swing_state_t *foot)
 {
     const bool arrived = x_m > cycle->quarter.length_m; /* and late to land */
     const float speed_m_s = arrived ? 0.0f : cycle->profile.speed_m_s;
     const saddle_swing_place_t place = {
-        .progress = progress,
+        .progress = swing_progress(cycle, quarter_progress(cycle, x_m)),
         .rate_hz = 0.5f * speed_m_s / cycle->quarter.length_m,
-        .x_m = arrived ? cycle->quarter.length_m : x_m,
         .speed_m_s = speed_m_s,
-        .lateral = saddle_com_lateral(&cycle->quarter, phase),
+        .way = swing_way(cycle, model, saddle_smaller(x_m, cycle->quarter.length_m), phase),
     };
     saddle_foot_swing(&cycle->swing, &place, foot);
 }
@@ -377,7 +394,7 @@ static saddle_vec2_t step_here(const saddle_cycle_t *cycle, const saddle_model_t
     const place_t reference = reference_at(cycle, model, phase);
     saddle_swing_state_t foot;
     *place = place_at(cycle, &reference, x_m);
-    swing_foot(cycle, x_m, phase, swing_progress(cycle, quarter_progress(cycle, x_m)), &foot);
+    swing_foot(cycle, model, x_m, phase, &foot);
     return (saddle_vec2_t){foot.position_m.x, foot.position_m.y};
 }
 
@@ -483,9 +500,7 @@ static void redirect_swing(saddle_cycle_t *cycle, const saddle_model_t *model, s
     saddle_swing_t *swing = &cycle->swing;
     swing->line_y_m =
         swing_line_y_m(cycle, model, saddle_other_side(cycle->quarter.stance), speed_m_s);
-    const saddle_sample_t line =
-        saddle_swing_line(swing, x_m, saddle_com_lateral(&cycle->quarter, phase));
-    swing->offset_m.x = (foot_m.x - line.value) / fade;
+    swing->offset_m.x = (foot_m.x - swing_way(cycle, model, x_m, phase).value) / fade;
     swing->offset_m.y = (foot_m.y - swing->line_y_m) / fade;
 }
 
@@ -519,8 +534,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
         return false;
     }
     saddle_swing_state_t foot;
-    swing_foot(cycle, old_x_m, old_phase, swing_progress(cycle, quarter_progress(cycle, old_x_m)),
-               &foot);
+    swing_foot(cycle, model, old_x_m, old_phase, &foot);
     const saddle_vec2_t swing_m = {foot.position_m.x - dx_m, foot.position_m.y - dy_m};
     move_to(cycle, saddle_position_from_m(x_m));
     cycle->quarter_length = saddle_position_from_m(length_m);
@@ -642,7 +656,7 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
         erf_height(cycle, model, to_saddle_m, speed_m_s, pose);
     }
     const float progress = swing_progress(cycle, pose->progress);
-    swing_foot(cycle, x_m, phase, progress, &pose->swing);
+    swing_foot(cycle, model, x_m, phase, &pose->swing);
     pose->stance_pitch_rad = before ? pose->ankle.toe_off_rad : -pose->ankle.heel_strike_rad;
     pose->swing_pitch_rad = swing_pitch_rad(cycle, model, progress);
 }

@@ -24,6 +24,12 @@ typedef struct {
     float vertical_m, vertical_sin, vertical_cos;
 } saddle_shape_t;
 
+/** The swing foot's way along x, [E44]. */
+typedef struct {
+    float begin, rate, skew; /**< of swings; skew 0: on the line through stance foot and CoM */
+    float scale;             /**< so that the foot is there when it lands */
+} saddle_swing_profile_t;
+
 /** Coefficients, derived once. */
 typedef struct {
     float pendulum_m;              /**< l_p, [E1] */
@@ -42,6 +48,7 @@ typedef struct {
     float strike_lead;          /**< of half a step, from heel strike to landing, [E38] */
     float leg_m;                /**< with the sole flat and the knee straight, [E25] */
     saddle_shape_t shape;
+    saddle_swing_profile_t swing;
     float command_max_age_us, com_max_age_us, foot_max_age_us; /**< to compare ages with */
     uint32_t tick_max_us;
     uint32_t shift_us; /**< of a shift of weight */
@@ -91,6 +98,7 @@ typedef struct {
     float lift_progress, land_progress; /**< in the air between them */
     float line_y_m;                     /**< where it lands, from the stance CoP */
     saddle_vec2_t offset_m;             /**< from the line to where it lifted off: fades out */
+    float stretch_m; /**< along x, from its way in this quarter to that in the last: fades out */
     float clearance_m;
     float path_width_m; /**< of the quarter whose lateral path is followed */
 } saddle_swing_t;
