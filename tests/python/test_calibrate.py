@@ -139,8 +139,18 @@ def test_no_quantity_is_farther_from_the_walk_than_by_default(write, tmp_path):
     scatter_m = np.interp(walk.time_s, np.arange(0, 10, 0.4), rng.normal(0, 0.01, 25))
     swaying = moved(walk, com_m=scatter_m[:, None] * np.array([0, 1.0, 0.3]))
     rows = followed(tmp_path, write(swaying))
-    for name in ("com_y_m", "com_z_m", "heel_strike_s"):
+    for name in ("com_y_m", "com_z_m", "heel_strike_s"):  # the swing's line is the sway's
         assert rows["calibrated"][name] <= rows["default"][name] + 1e-6, name
+
+
+def test_swing_of_a_person_is_found(write, tmp_path):
+    swing = {"swing_begin": -0.3, "swing_end": 1.05, "swing_skew": 1.5}
+    walk = write(walk_of(PERSON | swing, 1.1))
+    found = calibrated(tmp_path, walk)
+    assert found["swing_end"] == pytest.approx(1.05, abs=0.05)
+    assert found["swing_skew"] == pytest.approx(1.5, abs=0.3)
+    rows = followed(tmp_path, walk)
+    assert rows["calibrated"]["swing_x_m"] < 0.012 < 3 * rows["default"]["swing_x_m"]
 
 
 def test_steps_of_several_cadences_are_pooled(write, tmp_path):
@@ -310,6 +320,7 @@ def test_without_toes_the_steps_are_not_reported_and_the_rest_is(tmp_path, capsy
         "strike_share": 0.362,
         "ankle": "cycloid",
     }
+    population |= {"swing_begin": -0.32, "swing_end": 1.04, "swing_skew": 1.47}
     fitted = {"body_height_m", "vertical_slope_s", "vertical_intercept_m"}
     assert set(found) == {*fitted, *population}
     assert {name: found[name] for name in population} == population

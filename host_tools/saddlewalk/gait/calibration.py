@@ -86,11 +86,12 @@ def _shapes(walks: Sequence[WalkMeasures], fits: Sequence[Fit]) -> dict[str, lis
         return [step for walk in walks for step in timed_steps(walk, config)]
 
     sway = shape.sway(steps(fits))
+    swaying = steps([*fits, sway[0]])
     return {
         "com_y_m": sway,
-        "com_z_m": shape.height(steps([*fits, sway[0]])),
-        "swing_x_m": shape.swing(steps(fits)),
-        "heel_strike_s": shape.strike(steps(fits)),
+        "com_z_m": shape.height(swaying),
+        "swing_x_m": shape.swing(swaying),
+        "heel_strike_s": shape.strike(swaying),
     }
 
 

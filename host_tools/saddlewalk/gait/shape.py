@@ -175,7 +175,7 @@ def strike(steps: Sequence[TimedStep]) -> list[Fit]:
 def swing(steps: Sequence[TimedStep]) -> list[Fit]:
     """When the foot begins and ends to move along x, and how late it does the most of it, [E44]."""
     samples = [_swing_samples(step) for step in steps]
-    progress, x_m, length_m = np.concatenate([np.empty((3, 0)), *samples], axis=1)
+    progress, x_m, length_m, line_m = np.concatenate([np.empty((4, 0)), *samples], axis=1)
     population = _unknown("swing", SWING)
     if not len(x_m):
         return [population]
@@ -185,8 +185,12 @@ def swing(steps: Sequence[TimedStep]) -> list[Fit]:
 
     found = least_squares(left_over_m, list(SWING.values()), bounds=SWING_BOUNDS)
     fields = dict(zip(SWING, map(float, found.x), strict=True))
-    r2 = r_squared(left_over_m(found.x), x_m)
-    return [Fit("swing", fields, len(steps), r2), population, Fit("swing", note=_paper("line"))]
+    rest_m = left_over_m(found.x)
+    fitted = Fit("swing", fields, len(steps), r_squared(rest_m, x_m))
+    line = Fit("swing", note=_paper("line"))
+    if np.linalg.norm(x_m - line_m) < np.linalg.norm(rest_m):
+        return [line, fitted]
+    return [fitted, population, line]
 
 
 def swing_profile(progress: np.ndarray, begin: float, end: float, skew: float) -> np.ndarray:
@@ -200,7 +204,8 @@ def swing_profile(progress: np.ndarray, begin: float, end: float, skew: float) -
 
 
 def _swing_samples(step: TimedStep) -> np.ndarray:
-    """(3, n): progress of the planned swing, x of the foot from the stance foot, the step's length.
+    """(4, n): progress of the planned swing, x of the foot from the stance foot, the step's length,
+    and x of the paper's line, [E9].
 
     Until the other foot lands it swings, from then on the one that was passed.
     """
@@ -208,7 +213,10 @@ def _swing_samples(step: TimedStep) -> np.ndarray:
     ahead = share < 0.5
     x_m = np.where(ahead, step.curve.foot_m[1 - step.curve.side, :, 0], 0.0)
     x_m += np.where(ahead, 0.0, step.curve.foot_m[step.curve.side, :, 0] - step.length_m)
-    samples = np.stack([np.where(ahead, share + 0.5, share - 0.5), x_m, 0 * x_m + step.length_m])
+    since = np.where(ahead, share, share - 1)  # the foot via point, in steps
+    rise_m = step.quarter.width_m / 2 - step.quarter.amplitude_m * np.cos(np.pi * since)
+    line_m = step.quarter.width_m * step.length_m * since / rise_m
+    samples = np.stack([since + 0.5, x_m, np.full_like(x_m, step.length_m), line_m])
     return samples[:, np.isfinite(x_m) & (share < 1.5)]
 
 

@@ -40,7 +40,7 @@ saddle_jerk_t saddle_swing_share(const saddle_swing_profile_t *profile, float pr
     return (saddle_jerk_t){profile->scale * jerk.value, profile->scale * jerk.slope * steepness};
 }
 
-/* [E9] [E39] The offset fades out in the first half, the stretch in the second. */
+/* [E9] [E44] The offset fades out in the first half, the stretch in the second. */
 void saddle_foot_swing(const saddle_swing_t *swing, const saddle_swing_place_t *place,
                        saddle_swing_state_t *foot)
 {
