@@ -240,7 +240,7 @@ static void assert_within_limits(void)
 
 static void test_an_old_estimate_moves_nothing(void)
 {
-    estimate.measurement.com.age_us = 100001u;
+    estimate.measurement.com.age_us = 240001u;
     command();
     TEST_ASSERT_TRUE(commands.fallback);
     assert_within_limits();
@@ -256,7 +256,7 @@ static void test_an_old_estimate_moves_nothing(void)
                       commands.joint[1][SADDLE_KNEE].stiffness);
     ASSERT_SAME_FLOAT(estimate.joints.angle_rad[1][SADDLE_KNEE],
                       commands.joint[1][SADDLE_KNEE].angle_rad);
-    estimate.measurement.com.age_us = 99000u;
+    estimate.measurement.com.age_us = 239000u;
     command();
     TEST_ASSERT_FALSE(commands.fallback);
 }

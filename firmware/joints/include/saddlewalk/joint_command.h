@@ -36,7 +36,6 @@ typedef struct {
     float height_stiffness_1_s2; /**< of the CoM, [J17]; 0: the reference angles alone hold it */
     float height_damping_1_s;
     float full_load_share;  /**< of the weight: from there a leg has its stance gains, [J20] */
-    float swing_reaction;   /**< share of a swing leg's hip torques that the stance leg takes */
     float swing_roll_kg_m2; /**< inertia of a leg about its hip, [J19] */
     float swing_pitch_kg_m2;
     float swing_knee_kg_m2;   /**< and of the shank about its knee */

@@ -93,23 +93,6 @@ static float blend(const leg_t *leg, float swing, float stance)
     return swing + leg->load * (stance - swing);
 }
 
-/* [J19] What accelerates a swinging leg turns the trunk the other way; its weight does not, since the
- * ground force acts through the CoM of all. */
-static saddle_vec3_t reaction_nm(const saddle_drive_config_t *config,
-                                 const saddle_estimate_t *estimate, const saddle_intent_t *intent,
-                                 const saddle_chain_t *chain, const leg_t *leg)
-{
-    saddle_vec3_t sum_nm = {0.0f, 0.0f, 0.0f};
-    for (unsigned joint = SADDLE_HIP_YAW; joint <= SADDLE_HIP_PITCH; joint++) {
-        const float error_rad = intent->joints.angle_rad[leg->side][joint] -
-                                estimate->joints.angle_rad[leg->side][joint];
-        const float torque_nm =
-            leg->torque_nm[joint] + config->joint[joint].swing_stiffness * error_rad;
-        sum_nm = saddle_vec3_along(sum_nm, config->swing_reaction * torque_nm, chain->axis[joint]);
-    }
-    return sum_nm;
-}
-
 /* [J20] The torques that keep the CoP of a sole within its edges; of other joints those of the drive. */
 static void limit_torques(const saddle_legs_t *legs, const saddle_drive_config_t *config,
                           float load_n, bool on_sole, saddle_joint_command_t *command)
@@ -224,14 +207,12 @@ void saddle_joint_commands(const saddle_legs_t *legs, const saddle_drive_config_
     leg_t leg[2];
     commands->fallback = false;
     commands->cop_m = saddle_ground_forces(legs, config, estimate, intent, ground);
-    saddle_vec3_t moment_nm = trunk_moment_nm(config, &estimate->trunk);
+    const saddle_vec3_t moment_nm = trunk_moment_nm(config, &estimate->trunk);
     for (unsigned side = 0; side < 2; side++) {
         saddle_chain(legs, &estimate->trunk, &estimate->joints, (saddle_side_t)side, &chain[side]);
         leg[side] = bare_leg(legs, config, estimate, intent, side);
         if (intent->role[side] == SADDLE_LEG_SWINGS) {
             add_inertia(config, intent, &leg[side]);
-            moment_nm = saddle_vec3_add(
-                moment_nm, reaction_nm(config, estimate, intent, &chain[side], &leg[side]));
         }
         add_weight(legs, &chain[side], &leg[side]);
     }

@@ -23,7 +23,6 @@ static const saddle_config_field_t DRIVE_FIELDS[] = {
     FIELD(height_stiffness_1_s2, 0.0f, 500.0f),
     FIELD(height_damping_1_s, 0.0f, 100.0f),
     FIELD(full_load_share, 0.05f, 1.0f),
-    FIELD(swing_reaction, 0.0f, 1.0f),
     FIELD(swing_roll_kg_m2, 0.0f, 20.0f),
     FIELD(swing_pitch_kg_m2, 0.0f, 20.0f),
     FIELD(swing_knee_kg_m2, 0.0f, 5.0f),
@@ -63,11 +62,10 @@ saddle_drive_config_t saddle_drive_default(void)
     config.height_stiffness_1_s2 = 0.0f;
     config.height_damping_1_s = 0.0f;
     config.full_load_share = 0.4f;
-    config.swing_reaction = 0.5f;
     config.swing_roll_kg_m2 = 1.2f;
     config.swing_pitch_kg_m2 = 1.2f;
     config.swing_knee_kg_m2 = 0.3f;
-    config.max_age_s = 0.1f;
+    config.max_age_s = 0.24f;
     config.fallback_damping = 1.0f;
     config.fallback_stiffness = 0.0f;
     config.joint[SADDLE_HIP_YAW] = drive(gains(50.0f, 3.0f), gains(200.0f, 10.0f), 80.0f);

@@ -43,7 +43,7 @@ saddle_estimator_config_t saddle_estimator_default(void)
     config.gyro_range_rad_s = 17.4f;
     config.accelerometer_range_m_s2 = 156.0f;
     config.contact_gain_1_s = 25.0f;
-    config.posture_gain_1_s = 200.0f;
+    config.posture_gain_1_s = 120.0f;
     config.gravity_gain_1_s = 0.3f;
     config.sole_gain_1_s = 2.5f;
     config.heading_gain_1_s = 0.5f;
