@@ -104,7 +104,7 @@ def installed(tmp_path_factory) -> Path:
     return prefix
 
 
-def test_find_package_gives_the_core_and_the_wire(installed, walk, tmp_path):
+def test_find_package_gives_core_wire_and_joints(installed, walk, tmp_path):
     found = {"CMAKE_PREFIX_PATH": installed, "WANTED": VERSION}
     assert walk_of("find_package", tmp_path, **found) == walk
     receiver = Receiver()
@@ -116,6 +116,8 @@ def test_find_package_gives_the_core_and_the_wire(installed, walk, tmp_path):
         )
         assert receiver.accept(message), line
     assert len(lines) > 15
+    valid, knee_rad = run(tmp_path / "squat").stdout.split()
+    assert valid == "1" and 1.0 < float(knee_rad) < 2.0
 
 
 def test_the_wire_builds_without_cmake_to_the_same_frames(installed, tmp_path):
