@@ -23,8 +23,8 @@ from saddlewalk.transport.lcm_log import Event, LcmLog
 from saddlewalk.verdict import reason_words
 
 TICKS = 163  # of the walk of 13 s
-AGES = ("age of", "median (ms)", "95 % below (ms)", "oldest (ms)", "ticks before it came")
-TROUBLES = ("fault or limit", "meaning", "times", "in all (s)", "first at (s)", "last at (s)")
+AGES = ("age of", "median (ms)", "95 % below (ms)", "oldest (ms)", "ticks before the first")
+PROBLEMS = ("fault or limit", "meaning", "times", "total (s)", "first at (s)", "last at (s)")
 ALARMS = ("start (s)", "duration (s)", "level", "lowest margin", "driven by", "reason")
 GAIT = ("what", "unit", "measured", "default, not calibrated", "published", "what it means")
 VARIABILITY = ("steps", "foot", "what", "number", "mean", "SD", "CV")
@@ -311,7 +311,7 @@ def test_faults_late_ticks_and_rejected_frames_are_reported(walk, tmp_path):
 
     events = changed(changed(events_of(walk), "HEALTH", health), "STATUS", status)
     page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
-    ((name, words, *numbers),) = page.tables[TROUBLES]
+    ((name, words, *numbers),) = page.tables[PROBLEMS]
     assert (name, numbers) == ("LEFT_STALE", ["2", "0.24", "1.60", "2.40"])
     assert words == "the left foot's measurement is too old"
     assert f"{TICKS - 1} ticks late, 4 missed" in page.short["timing, since the firmware's start"]

@@ -1,4 +1,6 @@
-"""Instructions of the core's updates, by valgrind's callgrind: unlike times, they repeat."""
+"""Instruction counts of the core's updates, by valgrind's callgrind. Unlike times, they are
+repeatable.
+"""
 
 import os
 import re
@@ -35,7 +37,7 @@ class Update:
 
 @dataclass(frozen=True)
 class Group:
-    """Updates of one kind."""
+    """Instruction counts of one kind of update."""
 
     name: str
     updates: int
@@ -52,7 +54,7 @@ class Group:
 
 
 def count() -> list[Group]:
-    """The groups of updates, and saddle_init(). Raises MissingError without valgrind."""
+    """Counts for each kind of update and saddle_init(). Raises MissingError without valgrind."""
     calls = recorded_calls()
     printed, instructions = _callgrind(UPDATE, calls)
     _, floors = _callgrind(FLOOR, calls)

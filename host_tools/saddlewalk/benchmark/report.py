@@ -1,4 +1,4 @@
-"""What `saddlewalk bench` found, as text and as data: times, instructions, and the aims."""
+"""The results of `saddlewalk bench` as text and as JSON: times, instructions, and aims."""
 
 import platform
 from collections.abc import Iterable, Iterator
@@ -35,7 +35,7 @@ TITLES = {
 
 @dataclass(frozen=True)
 class Aim:
-    """found is a ratio; None: not measured here."""
+    """An aim for a ratio. found: None if it was not measured."""
 
     what: str
     wanted: float
@@ -64,7 +64,7 @@ class Report:
     no_instructions: str | None
 
     def ratio(self, name: str, task: str, caches: str) -> float | None:
-        """Median of this planner over the core's."""
+        """This planner's median time divided by the core's."""
         medians = {
             timing.name: timing.median_s(task, caches)
             for timing in self.timings
@@ -73,7 +73,7 @@ class Report:
         return medians[name] / medians[CORE] if name in medians else None
 
     def _fastest_qp(self, task: str) -> float | None:
-        """Of the fastest QP over the core, cold or warm, whichever is less."""
+        """Ratio of the fastest QP to the core, cold or warm, whichever is less."""
         return _least(self.ratio(name, task, caches) for name in QPS for caches in CACHES)
 
     def _least_ratio(self, name: str, task: str) -> float | None:

@@ -46,7 +46,7 @@ STRIDES = {"1 stride": 1, "10 strides": 10}
 TASKS = (UPDATE, *STRIDES)
 COLD, WARM = "cold", "warm"
 EVICTING_BYTES = 64 * 2**20  # more than the caches of one core hold
-WARM_UP = 3  # runs that are not counted
+WARM_UP = 3  # runs before the one that counts
 
 Plan = Callable[[int], float]  # strides -> seconds
 Runs = dict[str, Callable[[], float]]  # of TASKS, those that the planner can do -> seconds
@@ -60,7 +60,7 @@ QPS = (*map(qp_name, SOLVERS), PLACO)
 
 
 def instants(strides: int) -> np.ndarray:
-    """When the plan is wanted, s: from 0, while the strides last."""
+    """The instants of a plan of so many strides, s."""
     return TICK_S * np.arange(math.floor(strides * 2 * STEP_TIME_S / TICK_S + 1e-9) + 1)
 
 
@@ -91,7 +91,7 @@ class CorePlan:
         return self.plan(len(instants(strides)))
 
     def plan(self, count: int) -> float:
-        """Seconds; the plan is in outputs and scores."""
+        """Plan so many instants into outputs and scores; returns the time in seconds."""
         return self._checked(
             _library()[1].saddle_bench_plan_ns(
                 self._context, self._command, TICK_US, count, self.outputs, self.scores
@@ -99,7 +99,7 @@ class CorePlan:
         )
 
     def update(self) -> float:
-        """Seconds of the next instant of the walk; it is in the first of outputs and scores."""
+        """Compute the next instant into outputs[0] and scores[0]; returns the time in seconds."""
         return self._checked(
             _library()[1].saddle_bench_update_ns(
                 self._context, self._command, TICK_US, self.outputs, self.scores
@@ -123,7 +123,7 @@ def recorded_calls() -> str:
 
 
 def calls_of_plan() -> list[list[list[float]]]:
-    """Of each update of the plan's walk: the arguments of each of FUNCTIONS."""
+    """For each update of the planned walk, the arguments of each of FUNCTIONS."""
     updates: dict[str, list[list[float]]] = {}
     for line in recorded_calls().splitlines():
         walk, update, function, argument = line.split()
@@ -134,7 +134,7 @@ def calls_of_plan() -> list[list[list[float]]]:
 
 
 class Floor:
-    """The calls of the plan's updates, once more."""
+    """Repeats the recorded calls of the plan's updates."""
 
     def __init__(self) -> None:
         ffi, _ = _library()
@@ -184,7 +184,7 @@ def _floor() -> Runs:
 
 
 def _by_instants(seconds: Callable[[np.ndarray, bool], float], at_once: bool) -> Runs:
-    """seconds(instants, all at once or one by one); what plans all at once has no single update."""
+    """seconds(instants, at_once) plans them all at once or one by one; the former has no update."""
     times = {strides: instants(strides) for strides in STRIDES.values()}
     single = itertools.cycle(np.split(times[1], len(times[1])))
     update = None if at_once else lambda: seconds(next(single), False)
@@ -245,7 +245,7 @@ def _placo() -> Runs:
 
 
 def planners() -> dict[str, Callable[[], Runs]]:
-    """What is measured, by name: each is made once, or raises MissingError."""
+    """Constructors of all planners, by name; one that is not installed raises MissingError."""
     qps = {qp_name(solver): functools.partial(_walking_qp, solver) for solver in SOLVERS}
     return {
         CORE: _core,
@@ -261,7 +261,7 @@ def planners() -> dict[str, Callable[[], Runs]]:
 
 @dataclass
 class Timing:
-    """Seconds of every run of a planner, by task and state of the caches; or why there is none."""
+    """Times of a planner's runs by task and caches, in seconds; or why it was not measured."""
 
     name: str
     seconds: dict[str, dict[str, list[float]]] = field(default_factory=dict)

@@ -33,7 +33,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from saddlewalk.atomic_write import atomic_file
-    from saddlewalk.session.page import in_words, write_page
+    from saddlewalk.session.page import summary_lines, write_page
     from saddlewalk.session.runs import load_session
 
     session = load_session(args.log)
@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
     with atomic_file("--out", args.out, "wb") as file:
         file.write(page.encode())
     stream = sys.stderr if str(args.out) == "-" else sys.stdout
-    print(*in_words(session), printable(args.out), sep="\n", file=stream)
+    print(*summary_lines(session), printable(args.out), sep="\n", file=stream)
     if session.broken:
         print(f"incomplete: {session.broken}", file=sys.stderr)
     return 1 if session.broken else 0

@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
         log = CanLog(args.log)
         report = _named(args.log, rerun_can, log, load_config(args))
     if log.broken:
-        report.lacks(log.broken)
+        report.add_gap(log.broken)
     print("\n".join(map(printable, summary(report))))
     return 0 if report.sound else 1
 

@@ -1,1 +1,1 @@
-"""Logs of a walk: written, read, tabulated and recomputed."""
+"""Logs of a walk: writing, reading, exporting and recomputing them."""

@@ -1,4 +1,4 @@
-"""CAN logs, frame by frame as python-can reads them, with bounds on what a file can make it do."""
+"""CAN logs, read by python-can, with limits on the memory and time that a file can make it use."""
 
 import logging
 import struct
@@ -12,7 +12,7 @@ from can.io.generic import FileIOMessageReader
 
 from saddlewalk.errors import UserError
 
-# Not python-can's .db: a database may hold a program in the place of a table.
+# Not python-can's .db: in a database, a view can run code in place of a table.
 SUFFIXES = (".log", ".blf", ".asc", ".trc", ".csv")
 LINE_MAX = 4096  # characters
 IDENTIFIERS = 1 << 29
@@ -25,13 +25,13 @@ _CONTAINER, _DEFLATED = 10, 2
 
 
 class CanLog:
-    """The frames of a CAN log, in order, of the format that its suffix names."""
+    """The frames of a CAN log in order. Its suffix names the format."""
 
     def __init__(self, path: Path) -> None:
-        """Raises UserError for a file that is no CAN log, or holds no frame."""
+        """Raises UserError for a file that is not a CAN log, or holds no frame."""
         self.path = path
         self.frames = 0  # read so far
-        self.broken = ""  # in words, what could not be read of it; empty: nothing
+        self.broken = ""  # what could not be read, as text; empty: all was read
         if next(iter(self), None) is None:
             raise UserError(f"{path} holds no CAN frame{self.broken and f': {self.broken}'}")
 
@@ -58,8 +58,8 @@ class CanLog:
                 frame = _checked(next(frames))
             except StopIteration:
                 return
-            except Exception as error:  # whatever a reader makes of bytes that are no log
-                self.broken = f"it cannot be read on after {self.frames} records: {_words(error)}"
+            except Exception as error:  # readers raise any exception for bytes that are not a log
+                self.broken = f"it cannot be read beyond {self.frames} records: {_words(error)}"
                 return
             self.frames += 1
             yield frame
@@ -74,7 +74,7 @@ class CanLog:
             reader = can.LogReader(self.path)
         except OSError as error:
             raise UserError(f"{self.path}: {error.strerror}") from error
-        except Exception as error:  # each format's reader has errors of its own
+        except Exception as error:  # each format's reader raises its own exceptions
             raise UserError(
                 f"{self.path} is neither an LCM log nor a CAN log that can be read "
                 f"({', '.join(SUFFIXES)}): {_words(error)}"
@@ -85,7 +85,7 @@ class CanLog:
 
 
 class _Remarks(logging.Handler):
-    """Counts python-can's warnings, of which each is an entry that it passed over."""
+    """Counts python-can's warnings: one for each entry that it skips."""
 
     def __init__(self) -> None:
         super().__init__(logging.WARNING)
@@ -97,7 +97,7 @@ class _Remarks(logging.Handler):
 
 
 class _Lines:
-    """A text file by lines, of which none is too long to hold."""
+    """The lines of a text file, with a limit on their length."""
 
     def __init__(self, file: IO[str]) -> None:
         self._file = file
@@ -118,7 +118,7 @@ class _Lines:
 
 
 def _checked(frame: can.Message) -> can.Message:
-    """A frame that CAN can carry; python-can checks none that it reads."""
+    """The frame, if it is valid on CAN: python-can does not check what it reads."""
     if not 0 <= frame.arbitration_id < IDENTIFIERS:
         raise ValueError(f"a frame has identifier {frame.arbitration_id:#x}")
     if len(frame.data) > FRAME_MAX:
@@ -127,7 +127,7 @@ def _checked(frame: can.Message) -> can.Message:
 
 
 class _Blf(can.BLFReader):
-    """python-can's reader, which follows sizes without end or bound, with these checked first."""
+    """python-can's BLF reader, with the sizes in the file checked first, which it trusts."""
 
     def __init__(self, path: Path) -> None:
         try:

@@ -1,4 +1,4 @@
-"""The messages that a log's events hold, by the LCM types of saddlewalk."""
+"""Decoding the events of a log by saddlewalk's LCM types."""
 
 import functools
 from collections import Counter
@@ -11,7 +11,7 @@ from saddlewalk.transport.lcm_log import Event
 
 CHANNEL_PREFIX = "SADDLEWALK_"
 MESSAGE_MAX = 1 << 14  # bytes; the longest, config_t, has some 3000
-NAMES_MAX = 50  # of channels that are not ours, counted one by one
+NAMES_MAX = 50  # unknown channels that are counted separately
 FURTHER = "further channels"
 _NUMPY = {"float": ">f4", "double": ">f8", "byte": "u1", "boolean": "i1"} | {
     f"int{bits}_t": f">i{bits // 8}" for bits in (8, 16, 32, 64)
@@ -21,15 +21,15 @@ _FINGERPRINT = "fingerprint"
 
 @dataclass(frozen=True)
 class Kind:
-    """The messages of one channel."""
+    """The message type of a channel."""
 
     channel: str
     type: Any  # the generated class
-    layout: np.dtype | None  # of the encoded message; None: its size varies
+    layout: np.dtype | None  # layout of the encoded message; None: its size varies
 
     @property
     def name(self) -> str:
-        """As `plan`, of SADDLEWALK_PLAN."""
+        """Such as `plan` for SADDLEWALK_PLAN."""
         return self.channel.removeprefix(CHANNEL_PREFIX).lower()
 
     @functools.cached_property
@@ -37,12 +37,12 @@ class Kind:
         return self.type._get_packed_fingerprint()
 
     def is_whole(self, data: bytes) -> bool:
-        """Whether data of a fixed layout is such a message."""
+        """Whether data has the size and fingerprint of this type."""
         whole = self.layout is not None and len(data) == self.layout.itemsize
         return whole and data.startswith(self.fingerprint)
 
     def decode(self, data: bytes) -> Any:
-        """None if it is not such a message."""
+        """The message; None if data is not of this type."""
         if len(data) > MESSAGE_MAX or (self.layout is not None and not self.is_whole(data)):
             return None
         try:
@@ -51,8 +51,8 @@ class Kind:
             return None
 
 
-class Others(Counter[str]):
-    """Messages that are not of a type of ours, by their channel; of any number of channels."""
+class UnknownMessages(Counter[str]):
+    """Counts messages of unknown types by channel, for any number of channels."""
 
     def add(self, channel: str) -> None:
         self[channel if channel in self or len(self) < NAMES_MAX else FURTHER] += 1
@@ -60,7 +60,7 @@ class Others(Counter[str]):
 
 @functools.cache
 def kinds() -> dict[str, Kind]:
-    """By the channel that carries them."""
+    """All message types, by channel."""
     from saddlewalk.transport import lcm_types
 
     found = {}
@@ -72,13 +72,13 @@ def kinds() -> dict[str, Kind]:
 
 
 def decode(event: Event) -> Any:
-    """The message of an event, by its channel's type; None if it is none of that type."""
+    """The message of an event; None if it is not of its channel's type."""
     kind = kinds().get(event.channel)
     return kind.decode(event.data) if kind else None
 
 
 def _layout(generated: Any) -> np.dtype | None:
-    """The encoded message, member by member, behind the fingerprint of its type."""
+    """Layout of the encoded message: the type's fingerprint, then member by member."""
     members: list[tuple[Any, ...]] = [(_FINGERPRINT, ">u8")]
     described = (generated.__slots__, generated.__typenames__, generated.__dimensions__)
     for name, kind, dimensions in zip(*described, strict=True):

@@ -1,7 +1,7 @@
 """A walk on disk: the LCM event log, every CAN frame, and a CSV row a tick.
 
-Each file is written as the walk goes on and closed whatever happens, so that what was recorded
-before a failure stays.
+Each file is written during the walk and closed on any error, so what was recorded before it is
+kept.
 """
 
 import csv
@@ -24,7 +24,7 @@ from saddlewalk.transport.lcmbus import listen, receive
 
 LCM_CHANNELS = "SADDLEWALK_.*"
 LCM_QUEUE = 2000
-LAST_WORDS_S = 0.2  # for what is still on its way at the end
+LAST_WORDS_S = 0.2  # for messages that are still in transit at the end
 CHANNELS = tuple(
     f"SADDLEWALK_{part}"
     for part in "CONFIG INPUT PLAN SCORES VERDICT BALANCE BOS HEALTH STATUS TRUTH".split()
@@ -56,7 +56,7 @@ class Recorder(Observer):
         self.can_path = folder / CAN_LOG
         self.csv_path = folder / TABLE
         self.frames = self.rows = self.lcm_messages = 0
-        self.levels: list[str] = []  # announced, of each tick until a fall
+        self.levels: list[str] = []  # announced level of each tick until a fall
         try:
             self._csv_file = self.csv_path.open("w", newline="")
             self._can_log = can.CanutilsLogWriter(self.can_path, channel="saddlewalk")
@@ -100,7 +100,9 @@ class Recorder(Observer):
 
 
 def row(tick: Tick, wearer: Wearer) -> list[Cell]:
-    """One line of walk.csv, world frame, in the order of COLUMNS; no plan: empty cells."""
+    """One line of walk.csv in the order of COLUMNS, in the world frame; cells are empty without a
+    plan.
+    """
     scores = scores_of(tick.messages)
     left, right = wearer.feet
     return [
@@ -125,7 +127,7 @@ def row(tick: Tick, wearer: Wearer) -> list[Cell]:
 
 
 def _recovery(scores: Signals) -> list[Cell]:
-    """Which foot, where from the stance foot, the reach that is left, whether it ends the walk."""
+    """Cells: foot, position from the stance foot, remaining reach, whether it ends the walk."""
     foot = "right" if scores["FOOT"] else "left"
     return [
         foot if scores["COMPARED"] else None,

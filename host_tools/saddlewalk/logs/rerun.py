@@ -1,4 +1,4 @@
-"""Logged runs recomputed from their inputs, and each of their outputs compared, bit for bit.
+"""Recomputes logged runs from their inputs and compares each output, bit for bit.
 
 An LCM log holds all that a run was given: SADDLEWALK_CONFIG, and with each tick SADDLEWALK_INPUT.
 So it can be recomputed on any machine, whatever its clock was. A CAN log holds the frames that
@@ -20,8 +20,8 @@ from saddlewalk.logs.messages import decode
 from saddlewalk.transport.lcm_log import Event
 
 TIME_MAX_US = 2**63 - 1  # of LCM's signed times
-GAPS_MAX = 20  # listed one by one
-# Channels that firmware before them did not have: a log without any of it is whole all the same.
+GAPS_MAX = 20  # gaps that are listed separately
+# Channels that older firmware did not publish: a log without them is still complete.
 ADDED_CHANNELS = {"SADDLEWALK_BALANCE"}
 HEALTH_FIELDS = ("tick", "status", "limits", "faults")  # the core's; the others are the host's
 _PACKED = {"float": ">f", "double": ">d", "int8_t": ">b", "int32_t": ">i", "int64_t": ">q"}
@@ -29,7 +29,7 @@ _PACKED = {"float": ">f", "double": ">d", "int8_t": ">b", "int32_t": ">i", "int6
 
 @dataclass(frozen=True)
 class Difference:
-    """A tick's first output that is not what the core gives for its inputs."""
+    """A tick's first output that differs from what the core computes."""
 
     tick: int
     name: str  # the message and its field
@@ -45,7 +45,7 @@ class Difference:
 
 @dataclass
 class Report:
-    """What was recomputed, the first difference, and what could not be compared."""
+    """The result: what was recomputed, the first difference, and what could not be compared."""
 
     source: str = ""
     runs: int = 0
@@ -60,7 +60,7 @@ class Report:
 
     @property
     def not_compared(self) -> list[str]:
-        """What of the log could not be compared, as text."""
+        """The parts of the log that could not be compared, as text."""
         further = [f"{self.further_gaps} further gaps"] if self.further_gaps else []
         lost = (
             f"{name} of {lack.ticks} ticks is not in the log, the first time of tick {lack.first}"
@@ -70,22 +70,22 @@ class Report:
 
     @property
     def sound(self) -> bool:
-        """Every recorded output was recomputed and is the same."""
+        """Every recorded output was recomputed and is equal."""
         return self.first is None and not self.not_compared
 
-    def differs(self, difference: Difference) -> None:
+    def add_difference(self, difference: Difference) -> None:
         self.first = self.first or difference
         self.different_ticks += 1
 
-    def lacks(self, gap: str) -> None:
-        """A part of the log that cannot be compared, in words."""
+    def add_gap(self, gap: str) -> None:
+        """Report a part of the log that cannot be compared."""
         if len(self.gaps) < GAPS_MAX:
             self.gaps.append(gap)
         else:
             self.further_gaps += 1
 
-    def misses(self, name: str, tick: int) -> None:
-        """A tick without an output."""
+    def add_missing(self, name: str, tick: int) -> None:
+        """Report a tick without this output."""
         self.missing.setdefault(name, Missing(tick)).ticks += 1
 
 
@@ -108,24 +108,24 @@ class LoggedTick:
 
 
 def rerun_lcm(events: Iterable[Event]) -> Report:
-    """Compute the runs of an LCM log again. Raises UserError if no tick of it can be."""
+    """Recompute the runs of an LCM log. Raises UserError if no tick can be recomputed."""
     rerun = _LcmRerun()
     for tick in logged_ticks(events):
         rerun.take(tick)
     rerun.end_run()
-    rerun.forgive_added_channels()
+    rerun.ignore_added_channels()
     if not rerun.report.ticks:
         raise UserError(
             rerun.report.gaps[0]
             if rerun.report.gaps
-            else "nothing came on SADDLEWALK_INPUT, from which a run is recomputed: it was "
+            else "no SADDLEWALK_INPUT, from which a run is recomputed: it was "
             "logged without that channel, or by a firmware that did not publish it"
         )
     return rerun.report
 
 
 def logged_ticks(events: Iterable[Event]) -> Iterator[LoggedTick]:
-    """Each SADDLEWALK_INPUT with the messages of its tick, which are those of its time."""
+    """Each SADDLEWALK_INPUT with the messages of the same time, which are those of its tick."""
     tick, config = None, None
     for event in events:
         if event.channel == "SADDLEWALK_CONFIG":
@@ -157,7 +157,7 @@ def _begun(event: Event, config: Event | None) -> LoggedTick:
 
 
 def _utime_us(event: Event) -> int:
-    """Of any message of ours: the first member, after LCM's fingerprint of the type."""
+    """utime_us of an encoded message: the first member, after LCM's fingerprint of the type."""
     return int.from_bytes(event.data[8:16], "big", signed=True)
 
 
@@ -184,15 +184,15 @@ class _LcmRerun:
             self._compute(self._firmware, tick)
 
     def end_run(self) -> None:
-        """Report what of the run could not be computed."""
+        """Report the ticks that could not be computed."""
         if self._why:
-            self.report.lacks(
+            self.report.add_gap(
                 f"{self._why}: ticks {self._first_unknown} to {self._last} cannot be computed"
             )
         self._why, self._firmware, self._last = "", None, None
 
-    def forgive_added_channels(self) -> None:
-        """What came with no tick at all was not published."""
+    def ignore_added_channels(self) -> None:
+        """An added channel that came with no tick was not published: no gap."""
         for channel in ADDED_CHANNELS & self.report.missing.keys():
             if self.report.missing[channel].ticks == self.report.ticks:
                 del self.report.missing[channel]
@@ -215,7 +215,7 @@ class _LcmRerun:
 
     def _compute(self, firmware: Firmware, tick: LoggedTick) -> None:
         if tick.config and _fields(tick.config) != _fields(self._config):
-            self.report.lacks(f"the configuration with tick {tick.number} is another")
+            self.report.add_gap(f"the configuration changes at tick {tick.number}")
         output = firmware.tick(tick.inputs)
         self.report.ticks += 1
         differences = [
@@ -226,12 +226,12 @@ class _LcmRerun:
         differences.append(self._compare_health(tick, health))
         first = next(filter(None, differences), None)
         if first:
-            self.report.differs(first)
+            self.report.add_difference(first)
 
     def _recorded(self, tick: LoggedTick, channel: str) -> Event | None:
         event = tick.outputs.get(channel)
         if event is None:
-            self.report.misses(channel, tick.number)
+            self.report.add_missing(channel, tick.number)
         else:
             self.report.compared += 1
         return event
@@ -267,7 +267,7 @@ def _fields(config: Any) -> list[tuple[str, float]]:
 
 
 def _core_config(message: Any) -> Any:
-    """A config_t as saddle_config_t. Raises UserError if its fields are not this version's."""
+    """A config_t as saddle_config_t. Raises UserError if its fields differ from this version's."""
     config = default_config()
     fields = dict(_fields(message))
     known = {name for name, _ in ffi().typeof(config).item.fields}
@@ -278,7 +278,7 @@ def _core_config(message: Any) -> Any:
                 f"{fault} a field of {__version__}'s: give a log of the same version"
             )
     if fields["ankle"] not in ANKLES.values():
-        raise UserError(f"its configuration has ankle {fields['ankle']}: give a log that is whole")
+        raise UserError(f"its configuration has ankle {fields['ankle']}: the log is damaged")
     for name, value in fields.items():
         setattr(config, name, value)
     return config
@@ -302,7 +302,7 @@ def _unreadable(tick: int, event: Event) -> Difference:
 
 
 def _flat(message: Any) -> dict[str, tuple[str, Any]]:
-    """Fields of an LCM message, element by element: name -> (LCM type, value)."""
+    """Fields of an LCM message and elements of arrays: name -> (LCM type, value)."""
     flat: dict[str, tuple[str, Any]] = {}
     for name, kind in zip(message.__slots__, message.__typenames__, strict=True):
         value = getattr(message, name)

@@ -1,7 +1,7 @@
-"""A CAN log of a run in lockstep recomputed: from frames to frames, bit for bit.
+"""Recomputes a CAN log of a run in lockstep: from frames to frames, bit for bit.
 
-The log must begin with the host process. Of HEALTH, LATE_TICKS and REJECTED_FRAMES count what no
-log shows, and are taken as they were recorded.
+The log must begin with the host process. LATE_TICKS and REJECTED_FRAMES of HEALTH do not follow
+from a log, and are not compared.
 """
 
 from collections.abc import Iterable
@@ -17,9 +17,9 @@ from saddlewalk.transport import wire
 
 
 def rerun_can(frames: Iterable[can.Message], config: Any) -> Report:
-    """Compute a run again with a configuration of saddlewalk.config.
+    """Recompute a run with a configuration of saddlewalk.config.
 
-    Raises UserError if no tick of it can be.
+    Raises UserError if no tick can be recomputed.
     """
     report = Report(source="CAN", runs=1)
     node, answer = LockstepHost(config), {}
@@ -33,27 +33,27 @@ def rerun_can(frames: Iterable[can.Message], config: Any) -> Report:
             break
         answer = {} if name == "HEALTH" else answer
     if not report.ticks:
-        raise UserError(_nothing(report, node))
+        raise UserError(_why_not_rerun(report, node))
     if node.waiting and not report.gaps:
-        report.lacks("the log ends before the answer to its last measurements")
+        report.add_gap("the log ends before the answer to its last measurements")
     return report
 
 
 def _is_ours(frame: can.Message) -> bool:
-    """A classic data frame of our length; any other is the host's to refuse."""
+    """Whether it is a classic data frame of 8 bytes; the host rejects any other."""
     return is_classic(frame) and len(frame.data) == wire.FRAME_LENGTH
 
 
-def _nothing(report: Report, node: LockstepHost) -> str:
+def _why_not_rerun(report: Report, node: LockstepHost) -> str:
     if report.gaps:
         return report.gaps[0]
     if node.inputs == 0:
-        return f"it has none of the frames {', '.join(INPUTS)} of which a run is recomputed"
-    return "it has no whole set of measurements with the HEALTH that answers it"
+        return f"it has none of the frames {', '.join(INPUTS)}, from which a run is recomputed"
+    return "it has no complete set of measurements followed by HEALTH"
 
 
 def _compare(report: Report, node: LockstepHost, answer: dict[str, bytes]) -> bool:
-    """One tick's frames. False: what follows cannot be computed, which the report then states."""
+    """Compare one tick's frames. False: the rest cannot be computed; the report says why."""
     tick = node.ticks - 1
     recorded = wire.raw_signals(wire.identifier("HEALTH"), answer["HEALTH"])
     if not _in_lockstep(report, node, recorded["COUNTER"]):
@@ -65,30 +65,30 @@ def _compare(report: Report, node: LockstepHost, answer: dict[str, bytes]) -> bo
     for identifier, data in node.firmware.frames(tick % wire.COUNTERS, *counts).items():
         name = wire.known_name(identifier)
         if name not in answer:
-            report.misses(name, tick)
+            report.add_missing(name, tick)
             continue
         report.compared += 1
         if answer[name] != data and first is None:
             first = _difference(tick, identifier, answer[name], data)
     if first:
-        report.differs(first)
+        report.add_difference(first)
     return True
 
 
 def _in_lockstep(report: Report, node: LockstepHost, counter: int) -> bool:
-    """Whether an answer is that of the one set of measurements since the answer before."""
+    """Whether exactly one set of measurements came since the previous answer."""
     tick = node.ticks - 1
     where = f"before answer {report.ticks}"
     if node.waiting != 1:
-        report.lacks(
+        report.add_gap(
             f"{node.waiting} sets of measurements came {where}, in lockstep it is 1: the run was "
             "in real time (rerun its LCM log, which has the ages) or frames are missing; "
-            "no more was computed"
+            "the rest was not computed"
         )
     elif counter != tick % wire.COUNTERS:
-        report.lacks(
+        report.add_gap(
             f"answer {report.ticks} has counter {counter}, not {tick % wire.COUNTERS}: the log "
-            "begins in mid-run or frames are missing; no more was computed"
+            "begins in mid-run or frames are missing; the rest was not computed"
         )
     else:
         return True
@@ -96,7 +96,7 @@ def _in_lockstep(report: Report, node: LockstepHost, counter: int) -> bool:
 
 
 def _difference(tick: int, identifier: int, recorded: bytes, recomputed: bytes) -> Difference:
-    """Names the first signal that differs; CRC only if that alone does."""
+    """The first signal that differs; the CRC only if nothing else does."""
     name = wire.known_name(identifier)
     theirs, ours = (wire.raw_signals(identifier, data) for data in (recorded, recomputed))
     different = [signal for signal in ours if ours[signal] != theirs[signal]]

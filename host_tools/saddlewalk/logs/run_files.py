@@ -1,4 +1,4 @@
-"""What the files of a run are called, and those that are made of its log beside it."""
+"""Names of the files of a run, and of those that are made from its log."""
 
 from pathlib import Path
 
@@ -16,17 +16,17 @@ def table_names(form: str) -> tuple[str, ...]:
 
 
 def exported(log: Path, form: str) -> Path:
-    """Where a log is exported to by default: a file or, for tables, a folder."""
+    """The default output of an export: a file or, for tables, a folder."""
     return log.with_suffix(".mcap") if form == "mcap" else log.with_name(f"{log.stem}-{form}")
 
 
 def reported(log: Path) -> Path:
-    """Where the page of a log is by default."""
+    """The default path of a log's page."""
     return log.with_name(f"{log.name}.html")
 
 
 def run_names() -> tuple[str, ...]:
-    """All that belongs to one run in its folder."""
+    """All files of a run in its folder."""
     log = Path(LCM_LOG)
     made = [str(reported(log)), str(exported(log, "mcap"))]
     made += [

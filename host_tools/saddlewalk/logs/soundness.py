@@ -15,18 +15,18 @@ from saddlewalk.logs.rerun_can import rerun_can
 from saddlewalk.transport.lcm_log import LcmLog, is_lcm_log
 
 LATE_SHARE_MAX = 0.05
-Check = tuple[bool, str]  # good, and in words
+Check = tuple[bool, str]  # passed, and its text
 
 
 def walk_checks(wearer: Wearer, exoskeleton: Exoskeleton, stops: bool) -> list[Check]:
-    """Of the walk itself. stops: it was to end standing."""
+    """Checks of the walk itself. stops: it should end standing."""
     if wearer.fallen:
         return [(False, _fall(wearer.fell_at_s, exoskeleton))]
     return [(True, "the wearer stayed up"), *([_standing(exoskeleton)] if stops else [])]
 
 
 def _fall(time_s: float, exoskeleton: Exoskeleton) -> str:
-    """With the computer's stalls: a wearer whose process stalls cannot step."""
+    """Mentions a stall of this computer, during which the wearer cannot step."""
     punctuality = exoskeleton.punctuality
     stall = punctuality.stall_before(time_s) if punctuality else None
     if stall is None:
@@ -45,7 +45,7 @@ def _standing(exoskeleton: Exoskeleton) -> Check:
 
 
 def transport_checks(exoskeleton: Exoskeleton, recorder: Recorder) -> list[Check]:
-    """Of frames, ticks and what was recorded of them."""
+    """Checks of frames and ticks, and of their records."""
     health = exoskeleton.health
     late, refused = int(health["LATE_TICKS"]), int(health["REJECTED_FRAMES"])
     rejected = exoskeleton.reader.receiver.rejected
@@ -63,7 +63,7 @@ def transport_checks(exoskeleton: Exoskeleton, recorder: Recorder) -> list[Check
 
 
 def log_checks(recorder: Recorder, config: Any, by_can: bool) -> list[Check]:
-    """What LCM brought, and the firmware's walk recomputed from the log that has its inputs."""
+    """Checks of the LCM messages, and the firmware's outputs recomputed from the logged inputs."""
     channels = Counter(event.channel for event in LcmLog(recorder.lcm_path))
     expected = ["SADDLEWALK_TRUTH"] if by_can else CHANNELS
     missing = [name for name in expected if not channels[name]]
@@ -78,7 +78,7 @@ def log_checks(recorder: Recorder, config: Any, by_can: bool) -> list[Check]:
 
 
 def _rerun(log: Path, config: Any) -> Check:
-    """Whether the logged inputs reproduce the logged outputs; gaps of the log are only reported."""
+    """Whether the logged inputs reproduce the logged outputs. Gaps in the log are no failure."""
     try:
         report = rerun_lcm(LcmLog(log)) if is_lcm_log(log) else rerun_can(CanLog(log), config)
     except UserError as error:

@@ -22,7 +22,7 @@ import numpy as np
 from saddlewalk.atomic_write import atomic_file, atomic_folder
 from saddlewalk.contract import SIDES
 from saddlewalk.errors import UserError
-from saddlewalk.logs.messages import Kind, Others, kinds
+from saddlewalk.logs.messages import Kind, UnknownMessages, kinds
 from saddlewalk.logs.run_files import table_names
 from saddlewalk.paths import install_command
 from saddlewalk.transport.lcm_log import Event
@@ -31,8 +31,8 @@ UNITS = tuple(f"_{unit}" for unit in "m_s n_s m rad s us n j kg".split())  # lon
 AXES = ("x", "y", "z")
 BY_SIDE = {"foot_pitch_rad", "load"}  # pairs that are not of x and y
 
-BLOCK = 8192  # rows of a table that are held at once
-COLUMNS_MAX = 1000  # of SADDLEWALK_CONFIG, which names its own
+BLOCK = 8192  # rows of a table in memory
+COLUMNS_MAX = 1000  # of SADDLEWALK_CONFIG, whose columns are in the message
 LOGGED = "logged_s"
 TIME_MAX_NS = 2**64 - 1  # of MCAP
 
@@ -41,13 +41,13 @@ Value = float | int | str
 
 @dataclass(frozen=True)
 class Block:
-    """Rows of a table."""
+    """Some rows of a table."""
 
     logged_us: np.ndarray
     columns: dict[str, Any]  # of each an array, or a list in which None is no value
 
     def lists(self, unknown: Callable[[Any], Any]) -> Iterator[list[Value | None]]:
-        """The columns, with None for the floats that are `unknown`."""
+        """The columns, with `unknown` floats as None."""
         for values in self.columns.values():
             listed = values if isinstance(values, list) else values.tolist()
             if isinstance(values, list):
@@ -71,7 +71,7 @@ class Table:
             self.kinds |= {name: of for name, (of, _) in columns_of(kind.type()).items()}
 
     def learn(self, event: Event) -> bool:
-        """Whether it is a row; one that names columns of its own adds them to the table's."""
+        """Whether the event is a row. A row that names its own columns adds them to the table."""
         row = self._row(event)
         if row is None or isinstance(row, bytes):
             return row is not None
@@ -82,7 +82,7 @@ class Table:
         return True
 
     def add(self, event: Event) -> None:
-        """Take an event if it is a row of the columns that were learnt."""
+        """Add the event's row, if it has the table's columns."""
         row = self._row(event)
         if isinstance(row, bytes) or (row is not None and row.keys() <= self.kinds.keys()):
             self._logged_us.append(event.logged_us)
@@ -126,10 +126,10 @@ class Table:
         return columns
 
 
-def tables_of(events: Iterable[Event]) -> tuple[dict[str, Table], Others]:
-    """Empty tables in the order of their channels, and the messages that are of no type of ours."""
+def tables_of(events: Iterable[Event]) -> tuple[dict[str, Table], UnknownMessages]:
+    """Empty tables in the order of their channels, and the counts of unknown messages."""
     tables: dict[str, Table] = {}
-    others = Others()
+    others = UnknownMessages()
     for event in events:
         kind = kinds().get(event.channel)
         table = tables.get(event.channel) or (Table(kind) if kind else None)
@@ -154,7 +154,7 @@ def columns_of(message: Any) -> dict[str, tuple[str, Value]]:
 
 
 def _config_columns(config: Any) -> dict[str, tuple[str, Value]]:
-    """Those of config_t, which has the names of its fields beside their values."""
+    """Columns of config_t, which carries the names of its fields."""
     kinds = dict(zip(config.__slots__, config.__typenames__, strict=True))
     members = ("utime_us", "library_version", "wire_version", "lockstep", "ankle")
     single = {name: (kinds[name], getattr(config, name)) for name in members}
@@ -173,7 +173,7 @@ def element_names(name: str, count: int) -> list[str]:
 
 
 class Writer(Protocol):
-    """Files of some format, one at least, open for all the tables of a log."""
+    """Writes the tables of a log in one format, to one or more files."""
 
     paths: list[Path]
 
@@ -183,7 +183,7 @@ class Writer(Protocol):
 
 
 def export(log: Iterable[Event], tables: dict[str, Table], form: str, out: Path) -> list[Path]:
-    """Write the tables of a log; returns the files, each of which is whole or was not touched."""
+    """Write the tables of a log, atomically; returns the files."""
     missing = {"csv": None, "parquet": "pyarrow", "mcap": "mcap"}[form]
     if missing and not importlib.util.find_spec(missing):
         raise _missing(form, missing)

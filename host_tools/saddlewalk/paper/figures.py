@@ -1,4 +1,4 @@
-"""The paper's figures, drawn from the C core, with people beside the plan."""
+"""The paper's figures, drawn from the C core, with recorded people for comparison."""
 
 import io
 import math
@@ -34,12 +34,12 @@ SPEED_COLOURS = dict(zip(SPEEDS_M_S, (BLUE, GREEN, ORANGE, RED), strict=True))
 ANGLE_COLOURS = dict(zip(HEEL_STRIKES_DEG, (SKY, BLUE, PINK), strict=True))
 CURVE_SPEEDS_M_S = np.arange(0.3, 1.901, 0.05)
 LIMIT_SPEEDS_M_S = np.arange(0.002, 3.301, 0.002)
-FIGURE_SPEED_M_S = 1.2  # of the step from above, beside the person whose speed is nearest
+FIGURE_SPEED_M_S = 1.2  # of the step seen from above, with the person whose speed is nearest
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure of the paper, its file and what it shows."""
+    """A figure of the paper: its file and its caption."""
 
     name: str
     caption: str
@@ -113,7 +113,7 @@ def _finish(axes: Axes, **labels: str) -> None:
 
 
 def _draw_people(axes: Axes, trials: Sequence[Trial], quantity: str, factor: float = 1.0) -> None:
-    """Each trial a dot; children are hollow."""
+    """A dot for each trial, hollow for children."""
     styles: dict[bool, dict[str, Any]] = {
         False: {"color": "0.25"},
         True: {"mfc": "white", "mec": "0.25"},
@@ -246,7 +246,7 @@ def _draw_above(simulations: Simulations, trials: Sequence[Trial]) -> bytes:
 
 
 def _person_like(trials: Sequence[Trial]) -> Trial | None:
-    """The adult whose speed is nearest to the figure's and who stepped from right to left."""
+    """The adult with a step from right to left whose speed is nearest to the figure's."""
     able = [
         trial
         for trial in trials

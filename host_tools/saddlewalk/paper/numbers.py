@@ -1,4 +1,4 @@
-"""The numbers of the paper beside what comes out of the core, and what it finds in words."""
+"""The paper's numbers and findings, compared with the core's results."""
 
 import math
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ from saddlewalk.paper.simulations import (
 
 PARAMETER_TOLERANCE = 1e-4  # relative: recovered from rows in single precision
 ORENDURFF_M = {0.7: (0.0274, 0.0052), 1.6: (0.0483, 0.0092)}  # CoM height, mean and SD by speed
-VARIABILITY_SD = 2.0  # within so many standard deviations is within human variability
+VARIABILITY_SD = 2.0  # standard deviations that count as human variability
 
 # Worked by hand from the equations as docs/equations.md reads them; in the order of SPEEDS_M_S.
 HALF_STEP_MM = ("261.24", "315.30", "351.34", "423.42")
@@ -36,7 +36,7 @@ JUMP_MM = ("0", "-5", "-11", "-29")
 
 @dataclass(frozen=True)
 class Number:
-    """One number of the paper, and ours."""
+    """A number of the paper and the core's."""
 
     what: str
     case: str
@@ -67,14 +67,14 @@ class Finding:
 
 @dataclass(frozen=True)
 class Simulations:
-    """All that is compared: the paper's simulations, and the rigid pendulum at the same speeds."""
+    """The paper's simulations, and the rigid pendulum at the same speeds."""
 
     walks: dict[tuple[float, float], Walk]  # by speed and heel-strike angle in degrees
     rigid: dict[float, Walk]
     gaits: dict[float, Gait]
 
     def at(self, speed_m_s: float) -> Walk:
-        """The walk whose angle the paper's figures have."""
+        """The walk at the heel-strike angle of the paper's figures."""
         return self.walks[speed_m_s, FIGURE_HEEL_STRIKE_DEG]
 
 
@@ -91,12 +91,12 @@ def numbers(simulations: Simulations) -> list[Number]:
 
 
 def half_digit(printed: str) -> float:
-    """Half a unit of the last digit that is printed."""
+    """Half a unit of the last printed digit."""
     return 0.5 * 10.0 ** int(Decimal(printed).as_tuple().exponent)
 
 
 def _parameters(simulations: Simulations) -> Iterator[Number]:
-    """The constants of the paper, each recovered from what was planned."""
+    """The paper's constants, each recovered from planned walks."""
     slow, fast = simulations.at(SPEEDS_M_S[0]), simulations.at(SPEEDS_M_S[-1])
     middle = simulations.at(1.0)
     vertical = [(v, simulations.gaits[v].vertical_m) for v in (SPEEDS_M_S[0], SPEEDS_M_S[-1])]
@@ -219,7 +219,7 @@ def _on_the_saddle(simulations: Simulations) -> Finding:
     off_m = max(walk.com_off_saddle_m for walk in simulations.walks.values())
     return Finding(
         "The CoM stays on y_Saddle, also during the swing (eq. 2)",
-        f"farthest from it {1e6 * off_m:.2g} µm",
+        f"maximum distance from it {1e6 * off_m:.2g} µm",
         off_m < 1e-6,
     )
 

@@ -16,8 +16,8 @@ from saddlewalk.paper.simulations import gait, simulate
 
 TITLE = "The paper, reproduced"
 ONLY_ORENDURFF = (
-    "No folder of trials was given (`--gait`): of people only the points of Orendurff 2004 and the "
-    "paper's regressions are drawn."
+    "Without a folder of trials (`--gait`), people are shown only by the points of Orendurff 2004 "
+    "and the paper's regressions."
 )
 
 _ABOUT = """
@@ -31,14 +31,14 @@ _SOURCES = """
 *Stated*: the number, or the formula that gives it at this speed, is in the paper's text.
 *As read*: the paper shows it in a figure or defines it by an equation; the number beside ours was
 worked from the equations in double precision, with the readings below. Constants are recovered from
-what was planned, within a ten-thousandth of their value; the others are the same within half a unit
-of the last digit given.
+planned walks, within a ten-thousandth of their value; the others are the same within half a unit of
+the last digit given.
 """
 
 _NOT_OURS = """
-What the paper also states and no planner can give back belongs to its recordings (KIT data base, 58
+Other numbers of the paper are not the planner's. They belong to its recordings (KIT data base, 58
 walks of 6 people: R² of 0.157 for step width, 0.98 for step length, 0.2015 for vertical amplitude)
-or to its computer: the text gives no planning time.
+or to its computer (the text gives no planning time).
 """
 
 _READINGS = (
@@ -60,17 +60,17 @@ def write_page(
         f"## Figures\n\n{'' if trials else ONLY_ORENDURFF}",
         *(html_page.picture(each.name, each.caption) for each in pictures),
         f"## Every number\n{_SOURCES}\n{_numbers_table(numbers)}\n{_NOT_OURS}",
-        f"## What the paper finds\n\n{_findings_table(findings)}",
+        f"## The paper's findings\n\n{_findings_table(findings)}",
         f"## The twelve simulations\n\n{_simulations_table(simulations)}",
         *([_people(trials)] if trials else []),
-        f"## Where the print is off, and how we read it\n\n{_READINGS}\n{_readings_table()}",
+        f"## Ambiguities in the paper, and how we read them\n\n{_READINGS}\n{_readings_table()}",
     ]
     embedded = {each.name: each.png for each in pictures}
     return html_page.page(TITLE, "\n\n".join(sections), embedded)
 
 
 def verdict(numbers: Sequence[Number], findings: Sequence[Finding]) -> str:
-    """One line: what was compared, and what is off."""
+    """One line: what was compared, and what is outside its tolerance."""
     off = [f"{n.what} {n.case}".strip() for n in numbers if not n.sound]
     fallen = [finding.claim for finding in findings if not finding.holds]
     stated = sum(number.stated for number in numbers)
@@ -181,7 +181,7 @@ def _people(trials: Sequence[Trial]) -> str:
 
 
 def _departures_table(trials: Sequence[Trial]) -> str:
-    """How far people are from the model: bias and RMSE over the trials with a measurement."""
+    """Difference of people from the model: bias and RMSE over the trials with a measurement."""
     walking = [trial for trial in trials if gait(trial.speed_m_s).planned]
     model = [(gait(trial.speed_m_s), simulate(trial.speed_m_s)) for trial in walking]
     quantities: dict[str, Callable[[Any, Any, Any], float]] = {

@@ -1,4 +1,4 @@
-"""The gait of recorded people, trial by trial, to set beside the plan."""
+"""The gait of recorded people, trial by trial, for comparison with the plan."""
 
 import csv
 import itertools
@@ -19,7 +19,7 @@ class Trial:
     """Measurements of one recording. NaN: not measured."""
 
     name: str
-    about: dict[str, str]  # its row of the manifest; empty without one
+    about: dict[str, str]  # its row in the manifest, if there is one
     recording: Recording
     placed: list[Placement]
     speed_m_s: float
@@ -39,7 +39,7 @@ def load_trials(folder: Path) -> list[Trial]:
 
     manifest.csv, if there, has a row for each `file` with the columns dataset, licence,
     group and note; an empty step_width_m there: its width means nothing. Raises
-    UserError naming the folder, or the file that is no trial.
+    UserError naming the folder, or the file that is not a trial.
     """
     if not folder.is_dir():
         raise UserError(f"--gait {folder}: no such folder")
@@ -52,7 +52,7 @@ def load_trials(folder: Path) -> list[Trial]:
 
 
 def _read_manifest(path: Path) -> dict[str, dict[str, str]]:
-    """Its rows by the file that they are about; none without a manifest."""
+    """Its rows by file name; empty if there is no manifest."""
     if not path.exists():
         return {}
     try:
@@ -100,7 +100,7 @@ def least_lateral_stability(recording: Recording, placed: list[Placement]) -> fl
 
 
 def step_samples(a: Placement, b: Placement) -> slice:
-    """From amid the stance on one foot to amid the stance on the next."""
+    """From mid-stance on one foot to mid-stance on the next."""
     return slice((a.first + a.end) // 2, (b.first + b.end) // 2)
 
 
@@ -112,6 +112,6 @@ def _least_s_sw(recording: Recording, a: Placement, b: Placement) -> float:
 
 
 def _mean(values: list[float]) -> float:
-    """Of those that are known."""
+    """Mean of the values that are not NaN."""
     known = [value for value in values if np.isfinite(value)]
     return float(np.mean(known)) if known else np.nan

@@ -1,4 +1,4 @@
-"""What docs/equations.md decides where the paper's print is ambiguous, off or silent."""
+"""The decisions in docs/equations.md where the paper is ambiguous, wrong or incomplete."""
 
 import re
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ _ROW = re.compile(r"\| \[(?P<tag>E\d+)\] \| (?P<equation>.+) \| (?P<label>.+) \|
 
 @dataclass(frozen=True)
 class Reading:
-    """One row of the page whose last column has a reading; Markdown, as it stands there."""
+    """A row of the page with a reading in its last column, as Markdown."""
 
     tag: str
     equation: str
@@ -22,11 +22,11 @@ class Reading:
 
 
 def readings() -> list[Reading]:
-    """Raises UserError if the page is not there or has none."""
+    """Raises UserError if the page is missing or has no readings."""
     try:
         text = PAGE.read_text(encoding="utf-8")
     except OSError as error:
-        raise UserError(f"{PAGE}: {error.strerror}; the readings of the paper are there") from error
+        raise UserError(f"{PAGE}: {error.strerror}; it has the readings of the paper") from error
     rows = (_ROW.fullmatch(line) for line in text.splitlines())
     found = [Reading(**row.groupdict()) for row in rows if row and MARK in row["words"]]
     if not found:

@@ -1,4 +1,4 @@
-"""The paper's simulations, and the curves of the gait model beside them, all from the C core.
+"""The paper's simulations, and the gait model's curves over speed, all from the C core.
 
 Mean body of the paper, Phase0 = 0, one stride of two steps. SI units and radians.
 """
@@ -41,7 +41,7 @@ class Gait:
     half_step_max_m: float  # reach limit
     width_m: float
     vertical_m: float  # of the human regression, peak to peak
-    planned: bool  # a walk at this speed is planned as it is, not limited to another one
+    planned: bool  # the core plans this speed without limiting it
 
 
 def gait(speed_m_s: float) -> Gait:
@@ -76,7 +76,7 @@ class Walk:
 
     @property
     def step_length_m(self) -> float:
-        """From where the left foot stands to where the right one lands."""
+        """From the left foot's position to the right foot's landing."""
         return float(self["right_x_m"][self._middle] - self["left_x_m"][0])
 
     @property
@@ -103,7 +103,7 @@ class Walk:
 
     @property
     def jump_m(self) -> float:
-        """Of the CoM's height at the first saddle via point."""
+        """Jump of the CoM's height at the first saddle via point."""
         before_m, after_m = self.com_z_at_saddles_m[0]
         return float(after_m - before_m)
 
@@ -119,7 +119,7 @@ class Walk:
 
     @property
     def ankle_time_constant_s(self) -> float:
-        """From where the toe-off angle is 1 - erf(1) of that at heel strike, to heel strike."""
+        """Time from a toe-off angle of 1 - erf(1) times that at heel strike, to heel strike."""
         time_s, angle_rad = self._toe_off
         share = 1 - math.erf(1)
         return float(self.heel_strike_s - np.interp(share * self.toe_off_rad, angle_rad, time_s))
@@ -130,7 +130,7 @@ class Walk:
 
     @property
     def com_off_saddle_m(self) -> float:
-        """The farthest that the CoM goes from the line through the CoPs, y_Saddle."""
+        """Maximum distance of the CoM from the line through the CoPs, y_Saddle."""
         feet_x_m, feet_y_m = (
             [self[f"{side}_{axis}_m"] for side in ("left", "right")] for axis in "xy"
         )
@@ -140,7 +140,7 @@ class Walk:
         return float(np.abs(off_m).max())
 
     def share_inside(self, margin: str) -> float:
-        """Share of the time that a margin of stability is positive."""
+        """Share of the time in which a margin of stability is positive."""
         return float(np.mean(self[margin] > 0))
 
     @property
@@ -179,7 +179,7 @@ def simulate(
 
 
 def simulate_as_the_paper(speed_m_s: float, heel_strike_deg: float) -> Walk:
-    """A stride in time steps of PAPER_STEP_S, as far as they go."""
+    """A stride in time steps of PAPER_STEP_S; the last one may end before the stride."""
     stride_s = 4 * gait(speed_m_s).half_step_m / speed_m_s
     return _simulate(speed_m_s, heel_strike_deg, "erf", PAPER_STEP_S, int(stride_s / PAPER_STEP_S))
 

@@ -1,1 +1,1 @@
-"""A session: the runs of an LCM log as a clinician reads them, on one page."""
+"""The report of a session: the runs of an LCM log on one page, for a clinician."""

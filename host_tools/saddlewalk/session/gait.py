@@ -11,7 +11,7 @@ from saddlewalk.config import configuration
 from saddlewalk.contract import SIDES
 from saddlewalk.core import field_ranges, library, model_of
 from saddlewalk.session.runs import Run
-from saddlewalk.session.steps import Steps, Way, fresh, variability
+from saddlewalk.session.steps import Steps, Walked, fresh, variability
 
 # Schulz 2012: mean and SD of healthy adults at their preferred speed, lengths in leg lengths. A leg
 # is 0.53 of the body height (Drillis and Contini 1966).
@@ -56,9 +56,9 @@ class Configured:
     symmetry_percent: float
 
 
-def described(way: Way) -> Steps:
+def described(walk: Walked) -> Steps:
     """The steady steps; all where there are none."""
-    return way.steps.where(way.steps.steady) if way.steps.steady.any() else way.steps
+    return walk.steps.where(walk.steps.steady) if walk.steps.steady.any() else walk.steps
 
 
 def configured(run: Run, speed_m_s: float) -> Configured | None:
@@ -88,8 +88,8 @@ def configured(run: Run, speed_m_s: float) -> Configured | None:
     )
 
 
-def rows(run: Run, way: Way) -> Iterator[Row]:
-    steps = described(way)
+def rows(run: Run, walk: Walked) -> Iterator[Row]:
+    steps = described(walk)
     of = configured(run, steps.speed_m_s)
     nothing = np.nan
     cadence = _ratio(60, _mean(steps.time_s))
@@ -122,7 +122,7 @@ def rows(run: Run, way: Way) -> Iterator[Row]:
     yield Row(
         "double support",
         "% of the time",
-        double_support_percent(run, steps) if way.measured else nothing,
+        double_support_percent(run, steps) if walk.measured else nothing,
         nothing,
         f"about {DOUBLE_SUPPORT_PERCENT}",
         "The share in which both feet carry. People who feel unsafe keep both down for longer.",

@@ -15,10 +15,10 @@ from saddlewalk.printable import printable
 from saddlewalk.session import gait, quality
 from saddlewalk.session.pictures import draw
 from saddlewalk.session.runs import NO_NUMBER, Run, Session, Spans
-from saddlewalk.session.steps import QUANTITIES, Steps, Way, variability, walked
+from saddlewalk.session.steps import QUANTITIES, Steps, Walked, variability, walked
 
 TITLE = "Session report"
-LISTED = 200  # alarms, and gaps: the worst ones
+LISTED = 200  # alarms or gaps, the worst ones
 NO_DEVICE = (
     "**Saddlewalk is not a medical device.** It has not been certified or tested on patients, and "
     "this page is not a diagnosis: it shows the content of one log."
@@ -53,37 +53,37 @@ def write_page(log: Path, session: Session) -> str:
     embedded: dict[str, bytes] = {}
     for number, run in enumerate(session.runs, start=1):
         sections += [f"# Run {number} of {len(session.runs)}"] if several else []
-        way, found = walked(run), quality.troubles(run)
-        pictures = draw(run, way, found)
+        walk, found = walked(run), quality.problems(run)
+        pictures = draw(run, walk, found)
         names = {kind: f"run-{number}-{kind}.png" for kind in pictures}
         embedded |= {names[kind]: each.png for kind, each in pictures.items()}
         shown = {
             kind: html_page.picture(names[kind], each.caption) for kind, each in pictures.items()
         }
         sections += [
-            f"## Summary\n\n{_in_short(run, way)}",
+            f"## Summary\n\n{_summary(run, walk)}",
             f"## Levels and alarms\n\n{shown['level']}\n\n{_levels(run)}\n\n{_alarms(run)}",
             f"## Scores\n\n{shown['scores']}",
             *(words for kind, words in shown.items() if kind.startswith("alarm")),
-            f"## Steps\n\n{_steps(way)}\n\n{shown.get('steps', '')}",
-            f"## Gait\n\n{_gait(run, way)}",
-            f"## Data quality\n\n{_quality(run, found)}\n\n{shown.get('troubles', '')}",
+            f"## Steps\n\n{_steps(walk)}\n\n{shown.get('steps', '')}",
+            f"## Gait\n\n{_gait(run, walk)}",
+            f"## Data quality\n\n{_quality(run, found)}\n\n{shown.get('problems', '')}",
             f"## Configuration\n\n{_configuration(run)}",
         ]
     return html_page.page(f"{TITLE}: {printable(_name(log))}", "\n\n".join(sections), embedded)
 
 
-def in_words(session: Session) -> Iterator[str]:
+def summary_lines(session: Session) -> Iterator[str]:
     """A line per run."""
     for run in session.runs:
-        way = walked(run)
+        walk = walked(run)
         levels = ", ".join(f"{name} {held_s:.1f} s" for name, held_s in time_in_levels(run).items())
-        steps = f"{len(way.steps)} steps, {way.distance_m:.1f} m" if way else "steps not known"
+        steps = f"{len(walk.steps)} steps, {walk.distance_m:.1f} m" if walk else "steps not known"
         yield f"{run.ticks} ticks, {run.duration_s:.1f} s, {steps}; {levels}"
 
 
 def time_in_levels(run: Run) -> dict[str, float]:
-    """Seconds in each level, and without one if there are any."""
+    """Seconds in each level, and without a level if there were any."""
     times_s = {
         name: float(run.hold_s[run.levels == LEVELS.index(name)].sum())
         for name in (*LEVELS[1:], LEVELS[0])
@@ -94,7 +94,7 @@ def time_in_levels(run: Run) -> dict[str, float]:
 
 
 def alarms(run: Run) -> Spans:
-    """Each time that the level was not stable: caution, unstable, unknown."""
+    """Periods in which the level was caution, unstable or unknown."""
     troubled = [LEVELS.index(name) for name in LEVELS if name != "stable"]
     spans = run.spans(run.levels)
     return spans.where(np.isin(spans.value, troubled))
@@ -105,7 +105,7 @@ def _name(log: Path) -> str:
 
 
 def _plain(text: str) -> str:
-    """Of a log: text that is shown as it is, whatever it would mean in Markdown or HTML."""
+    """Text from a log, escaped so that Markdown and HTML show it as it is."""
     return "".join(c if c.isalnum() or c in " .,:-" else f"&#{ord(c)};" for c in printable(text))
 
 
@@ -141,17 +141,17 @@ def _date(logged_us: int) -> str:
 _LYING = "scores, levels and steps from then on are those of someone on the ground"
 
 
-def _in_short(run: Run, way: Way | None) -> str:
+def _summary(run: Run, walk: Walked | None) -> str:
     rows = [["duration", f"{run.duration_s:.2f} s"]]
     if run.fell_s is not None:
         rows.append(["the wearer fell", f"at {run.fell_s:.2f} s: {_LYING}"])
-    if way:
-        source = "measured" if way.measured else "planned"
-        unknown = f"; not known during {way.unknown_s:.2f} s" if way.unknown_s else ""
+    if walk:
+        source = "measured" if walk.measured else "planned"
+        unknown = f"; not known during {walk.unknown_s:.2f} s" if walk.unknown_s else ""
         rows += [
-            ["steps", f"{len(way.steps)}, {source}"],
-            ["distance of the CoM", f"{way.distance_m:.2f} m, {source}{unknown}"],
-            ["mean speed, over the steps", f"{_known(way.speed_m_s, 3)} m/s"],
+            ["steps", f"{len(walk.steps)}, {source}"],
+            ["distance of the CoM", f"{walk.distance_m:.2f} m, {source}{unknown}"],
+            ["mean speed, over the steps", f"{_known(walk.speed_m_s, 3)} m/s"],
         ]
     else:
         rows.append(["steps, distance, speed", UNKNOWN])
@@ -164,7 +164,7 @@ def _in_short(run: Run, way: Way | None) -> str:
 
 
 def _lowest(run: Run) -> str:
-    """How near to unstable the wearer came, when, and what drove it."""
+    """The lowest margin, when it was, and what drove it."""
     lowest = run.lowest_margin(run.upright)
     if lowest is None:
         return UNKNOWN
@@ -206,25 +206,25 @@ def _alarms(run: Run) -> str:
     ]
     header = ("start (s)", "duration (s)", "level", "lowest margin", "driven by", "reason")
     return table(header, rows) + _not_listed(
-        len(found), "alarms: these are the worst, and of these the longest"
+        len(found), "alarms: the worst are listed, the longest first"
     )
 
 
 def _not_listed(count: int, which: str) -> str:
-    """The note below a table of the first LISTED if there are more."""
+    """The note below a table that shows only LISTED of its rows."""
     return f"\n{LISTED} of {count} {which}." if count > LISTED else ""
 
 
-def _steps(way: Way | None) -> str:
-    if way is None:
+def _steps(walk: Walked | None) -> str:
+    if walk is None:
         return "Neither measured feet nor a plan was logged."
-    words = [_MEASURED if way.measured else _PLANNED]
-    if not len(way.steps):
+    words = [_MEASURED if walk.measured else _PLANNED]
+    if not len(walk.steps):
         return "\n\n".join([*words, NO_STEPS])
-    steady = way.steps.steady
-    groups = {"all": np.ones(len(way.steps), bool)} | ({"steady": steady} if steady.any() else {})
+    steady = walk.steps.steady
+    groups = {"all": np.ones(len(walk.steps), bool)} | ({"steady": steady} if steady.any() else {})
     rows = [
-        row for name, chosen in groups.items() for row in _variabilities(name, way.steps, chosen)
+        row for name, chosen in groups.items() for row in _variabilities(name, walk.steps, chosen)
     ]
     header = ("steps", "foot", "what", "number", "mean", "SD", "CV")
     return "\n\n".join([_STEPS, *words, *([_STEADY] if steady.any() else []), table(header, rows)])
@@ -245,10 +245,10 @@ def _variabilities(group: str, steps: Steps, chosen: np.ndarray) -> Iterator[lis
             yield [group, side, label, str(spread.steps), *numbers]
 
 
-def _gait(run: Run, way: Way | None) -> str:
-    if way is None or not len(way.steps):
+def _gait(run: Run, walk: Walked | None) -> str:
+    if walk is None or not len(walk.steps):
         return NO_STEPS
-    steps = gait.described(way)
+    steps = gait.described(walk)
     of = gait.configured(run, steps.speed_m_s)
     configured = "calibration" if of and of.calibrated else "default, not calibrated"
     cells = [
@@ -260,16 +260,16 @@ def _gait(run: Run, way: Way | None) -> str:
             row.published,
             row.meaning,
         ]
-        for row in gait.rows(run, way)
+        for row in gait.rows(run, walk)
     ]
-    header = ("what", "unit", "measured" if way.measured else "planned", configured, "published")
+    header = ("what", "unit", "measured" if walk.measured else "planned", configured, "published")
     speed = f"{len(steps)} steps at {_known(steps.speed_m_s, 2)} m/s in the mean"
     which = "The steady ones" if steps.steady.any() else "No step was steady: all"
     shown = table((*header, "what it means"), cells)
     return f"{which}, {speed}.\n\n{shown}\n\n{gait.NORMS}"
 
 
-def _quality(run: Run, troubles: Sequence[quality.Trouble]) -> str:
+def _quality(run: Run, problems: Sequence[quality.Problem]) -> str:
     numbers = np.frombuffer(run.numbers, np.int32)
     numbers = numbers[numbers != NO_NUMBER]
     numbering = f"numbers {numbers[0]} to {numbers[-1]}" if len(numbers) else "without numbers"
@@ -289,12 +289,12 @@ def _quality(run: Run, troubles: Sequence[quality.Trouble]) -> str:
         cells = [[f"{g.start_s:.2f}", f"{g.duration_s:.2f}", g.words] for g in found.longest]
         parts.append(
             table(("gap from (s)", "duration (s)", "which"), cells)
-            + _not_listed(found.count, "gaps: these are the longest")
+            + _not_listed(found.count, "gaps: the longest are listed")
         )
-    return "\n\n".join([*parts, _troubles(run, troubles), _ages(run)])
+    return "\n\n".join([*parts, _problems(run, problems), _ages(run)])
 
 
-def _troubles(run: Run, found: Sequence[quality.Trouble]) -> str:
+def _problems(run: Run, found: Sequence[quality.Problem]) -> str:
     if not found:
         return "No faults or limits were reported." if run.has("health") else ""
     rows = [
@@ -308,7 +308,7 @@ def _troubles(run: Run, found: Sequence[quality.Trouble]) -> str:
         ]
         for each in found
     ]
-    header = ("fault or limit", "meaning", "times", "in all (s)", "first at (s)", "last at (s)")
+    header = ("fault or limit", "meaning", "times", "total (s)", "first at (s)", "last at (s)")
     return table(header, rows)
 
 
@@ -317,7 +317,13 @@ def _ages(run: Run) -> str:
         [each.what, *map(_known, (each.median_ms, each.usual_ms, each.oldest_ms)), str(each.never)]
         for each in quality.ages(run)
     ]
-    header = ("age of", "median (ms)", "95 % below (ms)", "oldest (ms)", "ticks before it came")
+    header = (
+        "age of",
+        "median (ms)",
+        "95 % below (ms)",
+        "oldest (ms)",
+        "ticks before the first one",
+    )
     return table(header, rows) if rows else ""
 
 

@@ -12,18 +12,18 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from saddlewalk.contract import LEVELS
 from saddlewalk.pictures.walk import BALANCE_SHOWN, BLUE, FEET, GREEN, LANES, ORANGE, RED
-from saddlewalk.session.quality import Trouble
+from saddlewalk.session.quality import Problem
 from saddlewalk.session.runs import Run, Span, Spans
-from saddlewalk.session.steps import QUANTITIES, Way
+from saddlewalk.session.steps import QUANTITIES, Walked
 from saddlewalk.verdict import level_name, reason_words
 
 SHADES = {LEVELS.index("caution"): 0.15, LEVELS.index("unstable"): 0.35}
 STYLES = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."))
-SHOWN_M = (-0.8, 0.6)  # margins; after a fall they are far below
+SHOWN_M = (-0.8, 0.6)  # of margins; after a fall they are far below
 SHOWN_J = (-60.0, 120.0)
 SHOWN_SCORES = (-0.5, 1.6)
 NO_NUMBERS = "not known"
-LONG_S = 60.0  # a longer run's worst alarms are also shown closely
+LONG_S = 60.0  # in a longer run the worst alarms are also drawn in detail
 WORST = 3
 AROUND_S = 3.0  # shown before and after an alarm
 CLOSELY_S = 15.0  # at most
@@ -38,8 +38,8 @@ class Picture:
     png: bytes
 
 
-def draw(run: Run, way: Way | None, troubles: Sequence[Trouble]) -> dict[str, Picture]:
-    """By what they show; steps, troubles and alarms only where there are some."""
+def draw(run: Run, walk: Walked | None, problems: Sequence[Problem]) -> dict[str, Picture]:
+    """The pictures by name; steps, problems and alarms only if there are any."""
     pictures = {
         "level": Picture(_LEVEL, _draw_level(run)),
         "scores": Picture(_SCORES, _draw_scores(run)),
@@ -47,11 +47,11 @@ def draw(run: Run, way: Way | None, troubles: Sequence[Trouble]) -> dict[str, Pi
     for number, span in enumerate(_worst(run), start=1):
         caption = _ALARM.format(level_name(span.value), span.start_s)
         pictures[f"alarm-{number}"] = Picture(caption, _draw_scores(run, *_about(span)))
-    if way and len(way.steps):
-        caption = _STEPS.format("as measured" if way.measured else "as planned")
-        pictures["steps"] = Picture(caption, _draw_steps(run, way))
-    if troubles:
-        pictures["troubles"] = Picture(_TROUBLES, _draw_troubles(run, troubles))
+    if walk and len(walk.steps):
+        caption = _STEPS.format("as measured" if walk.measured else "as planned")
+        pictures["steps"] = Picture(caption, _draw_steps(run, walk))
+    if problems:
+        pictures["problems"] = Picture(_TROUBLES, _draw_problems(run, problems))
     return pictures
 
 
@@ -100,7 +100,7 @@ def _bar(axes: Axes, spans: Spans, shown_s: float, lane: int, style: dict[str, A
 
 
 def _extents(spans: Spans, shown_s: float) -> list[tuple[float, float]]:
-    """(start, duration) of bars: each a pixel wide at least, and one where no pixel is between."""
+    """(start, duration) of bars at least a pixel wide; bars closer than a pixel are merged."""
     if not len(spans):
         return []
     pixel_s = shown_s / COLUMNS
@@ -111,7 +111,7 @@ def _extents(spans: Spans, shown_s: float) -> list[tuple[float, float]]:
 
 
 def _worst(run: Run) -> Spans | tuple[()]:
-    """The alarms of a long run that matter most, in the order of their coming."""
+    """The worst alarms of a long run, in order of time."""
     if run.duration_s < LONG_S:
         return ()
     spans = run.spans(run.levels)
@@ -156,7 +156,7 @@ _SHOWN_ENERGIES = {"to stop": "excess_stop_j", "to the plan": "excess_track_j"}
 
 
 def _columns(run: Run, channel: str, members: dict[str, str]) -> Iterator[Line]:
-    """One after another, since each is long."""
+    """Read one after the other, since each is long."""
     for label, member in members.items():
         yield label, run.column(channel, member)
 
@@ -178,7 +178,7 @@ def _margins(run: Run) -> Iterator[Line]:
 def _lines(
     axes: Axes, run: Run, lines: Iterable[Line], shown: tuple[float, float], ylabel: str
 ) -> None:
-    """shown: the part of the time."""
+    """shown: a slice of the ticks."""
     ticks = slice(*np.searchsorted(run.time_s, shown))
     at_s, silent = run.time_s[ticks], np.flatnonzero(run.silent_s[ticks][:-1]) + 1
     for (name, numbers), (colour, style) in zip(lines, STYLES, strict=False):
@@ -207,7 +207,7 @@ def _shade(axes: Axes, run: Run, shown: tuple[float, float]) -> None:
 
 
 def _thinned(at_s: np.ndarray, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A curve with no more points than can be seen: the least and the greatest of each pixel."""
+    """A curve reduced to the minimum and maximum of each pixel."""
     if len(numbers) <= 4 * COLUMNS:
         return at_s, numbers
     edges_s = np.linspace(at_s[0], at_s[-1], COLUMNS, endpoint=False)
@@ -223,14 +223,14 @@ def _cut_off(axes: Axes, most: tuple[float, float]) -> None:
     axes.set_ylim(max(low, most[0]), min(high, most[1]))
 
 
-def _draw_steps(run: Run, way: Way) -> bytes:
+def _draw_steps(run: Run, walk: Walked) -> bytes:
     figure = Figure(figsize=(13, 6.5), dpi=110, layout="constrained")
     for axes, (member, label) in zip(
         figure.subplots(len(QUANTITIES), 1, sharex=True), QUANTITIES.items(), strict=True
     ):
         for side, (name, colour) in enumerate(FEET):
-            steps = way.steps.side == side
-            line = _thinned(way.steps.landed_s[steps], getattr(way.steps, member)[steps])
+            steps = walk.steps.side == side
+            line = _thinned(walk.steps.landed_s[steps], getattr(walk.steps, member)[steps])
             axes.plot(*line, "<>"[side], color=colour, ls=":", lw=0.8, label=name)
         axes.set(ylabel=label)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
@@ -238,13 +238,13 @@ def _draw_steps(run: Run, way: Way) -> bytes:
     return _png(figure)
 
 
-def _draw_troubles(run: Run, troubles: Sequence[Trouble]) -> bytes:
-    figure = Figure(figsize=(13, 1 + 0.3 * len(troubles)), dpi=110, layout="constrained")
+def _draw_problems(run: Run, problems: Sequence[Problem]) -> bytes:
+    figure = Figure(figsize=(13, 1 + 0.3 * len(problems)), dpi=110, layout="constrained")
     axes = figure.subplots()
-    for lane, trouble in enumerate(troubles):
+    for lane, trouble in enumerate(problems):
         _bar(axes, trouble.spans, run.duration_s, lane, {"color": BLUE})
-    axes.set_ylim(-0.5, len(troubles) - 0.5)
-    axes.set_yticks(range(len(troubles)), [trouble.name for trouble in troubles])
+    axes.set_ylim(-0.5, len(problems) - 0.5)
+    axes.set_yticks(range(len(problems)), [trouble.name for trouble in problems])
     _finish_time(figure, run)
     return _png(figure)
 

@@ -55,8 +55,8 @@ LIMIT_WORDS = {
 
 
 @dataclass(frozen=True)
-class Trouble:
-    """A fault, a limit or an error, and when."""
+class Problem:
+    """A fault, a limit or an error, and when it was reported."""
 
     name: str
     words: str
@@ -65,7 +65,7 @@ class Trouble:
 
 @dataclass(frozen=True)
 class Age:
-    """Of an input at the ticks, milliseconds; NaN if it never came."""
+    """Age of an input at the ticks, in milliseconds; NaN if it never came."""
 
     what: str
     median_ms: float
@@ -85,11 +85,11 @@ class Gap:
 class Gaps:
     count: int
     duration_s: float  # of all
-    longest: list[Gap]  # in the order of their coming
+    longest: list[Gap]  # in order of time
 
 
 def missing(run: Run) -> list[str]:
-    """A sentence for each channel that the log lacks, with what is therefore unknown."""
+    """A sentence for each channel that is not in the log: what is unknown without it."""
     return [
         f"Nothing readable was received on SADDLEWALK_{name.upper()}: {lack}."
         for name, lack in LACKS.items()
@@ -97,7 +97,7 @@ def missing(run: Run) -> list[str]:
     ]
 
 
-def troubles(run: Run) -> list[Trouble]:
+def problems(run: Run) -> list[Problem]:
     """Reported faults, limits and errors, by kind."""
     found = [
         *_bits(run, "faults", FAULTS, FAULT_WORDS),
@@ -106,12 +106,12 @@ def troubles(run: Run) -> list[Trouble]:
     statuses = run.bits("health", "status")
     for status in np.unique(statuses[statuses != 0]).tolist():
         name = name_of(status, STATUSES, "status")
-        found.append(_trouble(run, name, "the tick failed", statuses == status))
+        found.append(_problem(run, name, "the tick failed", statuses == status))
     return found
 
 
 def gaps(run: Run, most: int) -> Gaps:
-    """Where ticks are missing, and whether the log or the firmware lost them."""
+    """Missing ticks, and whether the log or the firmware lost them."""
     after_s = np.diff(run.time_s)
     found = np.flatnonzero(after_s > GAP_S)
     duration_s = after_s[found] - TICK_S
@@ -120,7 +120,7 @@ def gaps(run: Run, most: int) -> Gaps:
 
 
 def _gap(run: Run, index: int) -> Gap:
-    """Behind a tick."""
+    """The gap after a tick."""
     before, after = run.number(index), run.number(index + 1)
     words = "cause not logged"
     if before is not None and after is not None:
@@ -131,7 +131,7 @@ def _gap(run: Run, index: int) -> Gap:
 
 
 def ages(run: Run) -> list[Age]:
-    """Of each input of the ticks that were logged with their inputs."""
+    """The ages of each input, over the ticks that were logged with their inputs."""
     return [_age(run, part, what) for part, what in AGES.items() if run.has("input")]
 
 
@@ -161,20 +161,20 @@ def late(run: Run) -> str:
     return f"{health.late_ticks} ticks late" if health else ""
 
 
-def _bits(run: Run, member: str, names: Sequence[str], words: dict[str, str]) -> list[Trouble]:
+def _bits(run: Run, member: str, names: Sequence[str], words: dict[str, str]) -> list[Problem]:
     bits = run.bits("health", member)
     found = []
     for bit in range(32):
         there = (bits >> bit & 1) > 0
         if there.any():
             name = names[bit] if bit < len(names) else f"bit {bit}"
-            found.append(_trouble(run, name, words.get(name, "not known here"), there))
+            found.append(_problem(run, name, words.get(name, "not known here"), there))
     return found
 
 
-def _trouble(run: Run, name: str, words: str, there: np.ndarray) -> Trouble:
+def _problem(run: Run, name: str, words: str, there: np.ndarray) -> Problem:
     spans = run.spans(there)
-    return Trouble(name, words, spans.where(spans.value))
+    return Problem(name, words, spans.where(spans.value))
 
 
 def _age(run: Run, part: str, what: str) -> Age:

@@ -1,4 +1,4 @@
-"""The runs that an LCM log holds, tick by tick, as columns of the numbers that a page needs.
+"""The runs in an LCM log, as columns of the numbers that the report needs, tick by tick.
 
 A day of walking is a million ticks, so of each only these numbers are kept, none wider than
 needed: some 120 bytes of the 1500 or so that are logged.
@@ -16,17 +16,17 @@ import numpy as np
 from saddlewalk.contract import TICK_S
 from saddlewalk.dashboard import SILENT_AFTER_S
 from saddlewalk.errors import UserError
-from saddlewalk.logs.messages import Kind, Others, kinds
+from saddlewalk.logs.messages import Kind, UnknownMessages, kinds
 from saddlewalk.transport.lcm_log import LcmLog
 from saddlewalk.verdict import reason_words
 
 FIRMWARE = tuple("config input plan scores verdict balance bos health status".split())
-NUMBERED = ("health", "status", "input")  # messages with the number of their tick
+NUMBERED = ("health", "status", "input")  # messages that carry their tick's number
 NO_NUMBER = -(2**31)
 RUNS_MAX = 20  # more are two firmware processes that were logged at once
-BLOCK = 4096  # messages of a channel that are held as they came
+BLOCK = 4096  # messages of a channel that are kept before they are reduced
 
-# Columns that can be asked for: members, or with an index elements, of each channel.
+# Available columns of each channel: members, or elements of an array by index.
 KEPT: dict[str, tuple[str | tuple[str, int], ...]] = {
     "input": (
         *("command_age_us", "com_age_us", "left_age_us", "right_age_us"),
@@ -48,7 +48,7 @@ KEPT: dict[str, tuple[str | tuple[str, int], ...]] = {
 
 @dataclass(frozen=True)
 class Span:
-    """Ticks after one another that share a value."""
+    """Successive ticks with the same value."""
 
     value: Any
     ticks: slice
@@ -58,7 +58,7 @@ class Span:
 
 @dataclass(frozen=True)
 class Spans:
-    """Spans in the order of their coming, as columns."""
+    """Spans in order of time, as columns."""
 
     value: np.ndarray
     first: np.ndarray  # tick
@@ -76,7 +76,7 @@ class Spans:
             yield Span(value, slice(first, end), start_s, duration_s)
 
     def where(self, chosen: np.ndarray) -> "Spans":
-        """Those of a mask or of indices."""
+        """The spans selected by a mask or by indices."""
         return Spans(
             self.value[chosen],
             self.first[chosen],
@@ -86,7 +86,7 @@ class Spans:
         )
 
     def worst(self, most: int) -> "Spans":
-        """Up to that many of the largest values, and of these the longest; still in order."""
+        """Up to `most` spans: those with the largest values, then the longest; in order of time."""
         order = np.lexsort((-self.duration_s, -self.value))
         return self.where(np.sort(order[:most]))
 
@@ -117,14 +117,14 @@ class Channel:
         return np.frombuffer(self._columns[key], self._type(key))
 
     def there(self, ticks: int) -> np.ndarray:
-        """In which of the run's ticks a message came."""
+        """The ticks of the run that have a message."""
         there = np.zeros(ticks, bool)
         there[: self._ticks] = True
         there[np.frombuffer(self._without, np.uint32)] = False
         return there
 
     def _keep(self) -> None:
-        """Of the messages held as they came, what is needed."""
+        """Reduce the messages that are held to the numbers that are needed."""
         messages = np.frombuffer(b"".join(self._block), self.kind.layout)
         self._block = []
         for key, column in self._columns.items():
@@ -134,7 +134,7 @@ class Channel:
             column += numbers.astype(self._type(key)).tobytes()
 
     def _type(self, key: str | tuple[str, int]) -> np.dtype:
-        """LCM's, but for ages in microseconds, which are shown in milliseconds."""
+        """The LCM type, except for ages: float, for milliseconds."""
         member = key if isinstance(key, str) else key[0]
         assert self.kind.layout is not None  # of a kind that is KEPT
         logged = self.kind.layout[member].base.newbyteorder("=")
@@ -143,7 +143,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class Run:
-    """One run of the firmware, at least one tick. Times are since its first tick in the log."""
+    """One run of the firmware, of at least one tick. Times count from its first tick in the log."""
 
     utime_us: "array[int]"  # of each tick
     numbers: "array[int]"  # of ticks, from 0 at the firmware's start; NO_NUMBER: unknown
@@ -152,7 +152,7 @@ class Run:
 
     @property
     def fell_s(self) -> float | None:
-        """When an emulated wearer fell, to a tick; None if none did."""
+        """The tick's time at which an emulated wearer fell; None if it did not."""
         if not self.falls:
             return None
         return float(self.time_s[min(self.falls[0], self.ticks - 1)])
@@ -163,23 +163,23 @@ class Run:
 
     @cached_property
     def time_s(self) -> np.ndarray:
-        utime_us = np.frombuffer(self.utime_us, np.uint64)  # whose differences do not overflow
+        utime_us = np.frombuffer(self.utime_us, np.uint64)  # whose differences cannot overflow
         return (utime_us - utime_us[0]) / 1e6
 
     @cached_property
     def silent_s(self) -> np.ndarray:
-        """How long nothing came after each tick, if that is too long for it to hold; else 0."""
+        """The silence after each tick, if it is too long for the tick's values to hold; else 0."""
         after_s = np.diff(self.time_s)
         return np.append(np.where(after_s > SILENT_AFTER_S, after_s - TICK_S, 0.0), 0.0)
 
     @cached_property
     def after_silence(self) -> np.ndarray:
-        """Ticks before which nothing came for too long."""
+        """The ticks that follow such a silence."""
         return np.append(False, self.silent_s[:-1] > 0)
 
     @cached_property
     def hold_s(self) -> np.ndarray:
-        """For how long each tick's messages hold: to the next tick, or one period."""
+        """How long each tick's values hold: to the next tick, or one period before a silence."""
         return np.diff(self.time_s, append=self.time_s[-1] + TICK_S) - self.silent_s
 
     @property
@@ -187,7 +187,7 @@ class Run:
         return float(self.time_s[-1]) + TICK_S
 
     def number(self, tick: int) -> int | None:
-        """From 0 at the start of the firmware; None if not logged."""
+        """The tick's number since the firmware's start; None if not logged."""
         number = self.numbers[tick]
         return None if number == NO_NUMBER else number
 
@@ -200,29 +200,29 @@ class Run:
         return channel.kind.decode(channel.last) if channel else None
 
     def column(self, name: str, member: str, element: int | None = None) -> np.ndarray:
-        """A number of each tick, one of KEPT; NaN where it is not known."""
+        """One of KEPT for each tick; NaN where it is unknown."""
         if name not in self.channels:
             return np.full(self.ticks, np.nan, np.float32)
         kept = self.channels[name].kept(member if element is None else (member, element))
         exact = kept.dtype == np.float32 or kept.dtype.itemsize < 4
         numbers = np.full(self.ticks, np.nan, np.float32 if exact else np.float64)
         numbers[self.channels[name].there(self.ticks)] = kept
-        numbers[~np.isfinite(numbers)] = np.nan  # also a NaN that signals
+        numbers[~np.isfinite(numbers)] = np.nan  # also a signalling NaN
         return numbers
 
     def bits(self, name: str, member: str) -> np.ndarray:
-        """A message's bits of each tick; 0 where it did not come."""
+        """The bits of a message for each tick; 0 where it did not come."""
         bits = np.zeros(self.ticks, np.int32)
         if name in self.channels:
             bits[self.channels[name].there(self.ticks)] = self.channels[name].kept(member)
         return bits
 
     def logged(self, name: str, member: str) -> np.ndarray:
-        """A number of each message that came."""
+        """A number of each message that was logged."""
         return self.channels[name].kept(member)
 
     def spans(self, values: np.ndarray) -> Spans:
-        """Of one value a tick; silence ends a span."""
+        """Spans of equal values; a silence ends a span."""
         ends = (values[1:] != values[:-1]) | self.after_silence[1:]
         first = np.append(0, np.flatnonzero(ends) + 1)
         held_s = np.add.reduceat(self.hold_s, first)
@@ -232,18 +232,18 @@ class Run:
 
     @cached_property
     def levels(self) -> np.ndarray:
-        """The level announced, as verdict.LEVELS; -1: no verdict came."""
+        """The announced level of each tick, an index of verdict.LEVELS; -1: no verdict."""
         return np.nan_to_num(self.column("verdict", "level"), nan=-1).astype(np.int8)
 
     def reasons(self, ticks: slice) -> list[str]:
-        """In words, in the order of their coming."""
+        """The reasons during these ticks as text, in order of time."""
         codes = self._reasons[ticks]
         numbers, first = np.unique(codes[codes >= 0], return_index=True)
         words = (reason_words(int(number)) for number in numbers[np.argsort(first)])
         return [each for each in words if each]
 
     def lowest_margin(self, ticks: slice) -> tuple[int, float, str] | None:
-        """(tick, margin, what drove it in words) of the lowest margin; None if none is known."""
+        """(tick, margin, its driver as text) of the lowest margin; None if no margin is known."""
         margins = self._margins[ticks]
         if not np.isfinite(margins).any():
             return None
@@ -272,13 +272,13 @@ class Session:
     runs: list[Run]
     logged_us: tuple[int, int]  # first and last event, since 1970
     events: int
-    unreadable: Others  # messages of no type that this version has
+    unreadable: UnknownMessages  # messages of unknown types
     fell: bool | None  # the emulated wearer; None: there was none
-    broken: str  # what could not be read of the log
+    broken: str  # what could not be read, as text
 
 
 def load_session(path: Path) -> Session:
-    """Raises UserError for a file that is no LCM log, or holds nothing of the firmware's."""
+    """Raises UserError for a file that is not an LCM log, or has no message from the firmware."""
     log = LcmLog(path)
     gathered = _Gathered()
     logged_us: list[int] = []  # of the first event and the last
@@ -309,19 +309,19 @@ def load_session(path: Path) -> Session:
 
 
 class _Gathered:
-    """The runs of the messages so far.
+    """Sorts messages into runs.
 
-    Messages of one time, none twice, are one tick; a config_t alone is none. A run ends where time
-    or the ticks' number goes back.
+    Messages with the same time are one tick, unless one comes twice; a config_t alone is not a
+    tick. A run ends where the time or the tick's number goes back.
     """
 
     def __init__(self) -> None:
         self.runs: list[Run] = []
-        self.unreadable = Others()
+        self.unreadable = UnknownMessages()
         self.fell: bool | None = None
         self._lies = False
         self._utime_us = 0
-        self._tick: dict[str, bytes] = {}  # the messages of the tick at hand, by name
+        self._tick: dict[str, bytes] = {}  # messages of the current tick, by name
         self._number = -1  # the last in the run
 
     def take(self, channel: str, data: bytes) -> None:
@@ -344,7 +344,7 @@ class _Gathered:
         self.fell = self.fell or fallen
 
     def end_tick(self) -> None:
-        """What came so far of a tick is all of it."""
+        """The current tick is complete."""
         tick, self._tick = self._tick, {}
         if not tick.keys() - {"config"}:
             return
@@ -369,5 +369,7 @@ def _is_message(kind: Kind, data: bytes) -> bool:
 
 
 def _integer(data: bytes, at: int, size: int) -> int:
-    """utime_us is the first member of our messages, and of those of NUMBERED tick the second."""
+    """An integer of an encoded message. utime_us is the first member; in NUMBERED, tick is the
+    second.
+    """
     return int.from_bytes(data[at : at + size], "big", signed=True)

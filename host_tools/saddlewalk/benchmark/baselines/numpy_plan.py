@@ -1,4 +1,4 @@
-"""The paper's plan written plainly in numpy, function by function as its equations stand.
+"""The paper's plan in plain numpy, one function per group of equations.
 
 A steady walk, Phase0 = 0, the left foot at x = 0 (docs/equations.md names the tags). Every function
 of time takes one instant or an array of them, in seconds.

@@ -19,7 +19,7 @@ ROWS = (
 
 
 def _end(process: subprocess.Popen[str]) -> None:
-    """At the end of its input Octave ends by itself; killed, it would leave a file behind."""
+    """Close its input, so that Octave exits by itself; if killed, it would leave a file behind."""
     assert process.stdin and process.stdout
     process.stdin.close()
     process.wait()
@@ -27,7 +27,7 @@ def _end(process: subprocess.Popen[str]) -> None:
 
 
 class Octave:
-    """One Octave process, which ends with this object."""
+    """An Octave process that ends with this object."""
 
     def __init__(self) -> None:
         program = shutil.which("octave-cli")
@@ -54,7 +54,7 @@ class Octave:
     def seconds(
         self, speed_m_s: float, heel_strike_rad: float, t_s: Sequence[float], at_once: bool
     ) -> float:
-        """Time of one plan by Octave's own clock."""
+        """Time of one plan, by Octave's clock."""
         self._set_walk(speed_m_s, heel_strike_rad, t_s)
         call = "rows = plan_walk(speed, heel_strike, t);"
         if not at_once:
@@ -70,11 +70,11 @@ class Octave:
         self._process.stdin.write(f"{statement}\n")
 
     def _ask(self, statement: str) -> str:
-        """The line that the statement prints."""
+        """Run a statement and return the line that it prints."""
         self._send(f"{statement}; printf('\\n'); fflush(stdout);")
         assert self._process.stdin and self._process.stdout
         self._process.stdin.flush()
         line = self._process.stdout.readline()
         if not line.strip():
-            raise MissingError(f"GNU Octave does not run {SCRIPT.name}")
+            raise MissingError(f"GNU Octave cannot run {SCRIPT.name}")
         return line

@@ -1,7 +1,7 @@
-"""placo's walk planner, as its users call it: footsteps, supports, and the CoM by its own QP.
+"""placo's walk planner, used as in its examples: footsteps, supports, and the CoM by its QP.
 
 It walks from standing to standing, so its plan is a first and a last double support longer than the
-strides that are asked for. It plans for a robot; this one is the simplest that it takes.
+strides requested. It plans for a robot; this one is the simplest that it accepts.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from saddlewalk.benchmark.baselines import MissingError
 from saddlewalk.stderr_redirect import stderr_silenced
 
-# What a foot is to the walking QP as well: placo's feet lie along x, m.
+# The foot, also for the walking QP, in m; placo's feet point along x.
 FOOT_WIDTH_M = 0.08
 FOOT_LENGTH_M = 0.20
 
@@ -49,7 +49,7 @@ class PlacoWalk:
         self._parameters = parameters
 
     def plan(self, steps: int) -> object:
-        """placo's trajectory of so many steps. Raises MissingError if it finds none."""
+        """placo's trajectory for this number of steps. Raises MissingError if it finds none."""
         placo, parameters = self._placo, self._parameters
         parameters.planned_timesteps = (steps + 2) * parameters.single_support_timesteps
         planner = placo.FootstepsPlannerRepetitive(parameters)

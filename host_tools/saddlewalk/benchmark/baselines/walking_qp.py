@@ -2,7 +2,7 @@
 
 The linear inverted pendulum under piecewise constant jerk; the CoP stays within the stance foot and
 near its middle, the CoM at its speed, the jerk small (Wieber 2006; Herdt et al. 2010). Feet are
-given. The axes do not touch each other, so each is a programme of its own.
+given. The axes are independent, so each has its own programme.
 """
 
 from dataclasses import dataclass
@@ -16,14 +16,16 @@ from saddlewalk.contract import GRAVITY_M_S2
 SOLVERS = ("quadprog", "daqp", "osqp")
 INSTALL = "not installed: make bench-baselines"
 
-# What the programmes weigh against (CoP from the middle of the foot)^2, m^2.
+# Weights relative to the squared distance of the CoP from the middle of the foot, m^2.
 JERK_WEIGHT_S6 = 1e-6
 VELOCITY_WEIGHT_S2 = 1e-2
 
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis of the task: state position, velocity, acceleration now; CoPs at each instant."""
+    """One axis of the task: present position, velocity and acceleration; stance CoP at each
+    instant.
+    """
 
     state: np.ndarray
     velocity_m_s: float
@@ -33,7 +35,9 @@ class Axis:
 
 @dataclass(frozen=True)
 class Preview:
-    """What a horizon's programmes share, made once: instants period_s apart from one period on."""
+    """The matrices that all programmes of a horizon share. Instants are period_s apart, from
+    period_s on.
+    """
 
     instants: int
     period_s: float
@@ -41,7 +45,9 @@ class Preview:
 
     @cached_property
     def _free(self) -> tuple[np.ndarray, np.ndarray]:
-        """Velocity and CoP at each instant without jerk, of the state: each (instants, 3)."""
+        """Velocity and CoP at each instant as linear functions of the state, without jerk:
+        (instants, 3).
+        """
         t = self.period_s * np.arange(1, self.instants + 1)
         one, zero = np.ones_like(t), np.zeros_like(t)
         velocity = np.column_stack([zero, one, t])
@@ -50,7 +56,7 @@ class Preview:
 
     @cached_property
     def _forced(self) -> tuple[np.ndarray, np.ndarray]:
-        """Velocity and CoP at each instant of a unit jerk in each period: (instants, instants)."""
+        """Velocity and CoP at each instant for a unit jerk in each period: (instants, instants)."""
         later = np.subtract.outer(np.arange(self.instants), np.arange(self.instants))
         period = self.period_s
         velocity = (1 + 2 * later) * period**2 / 2
@@ -83,7 +89,7 @@ class Preview:
 
 
 class WalkingQp:
-    """A horizon's programmes for one solver of qpsolvers."""
+    """The programmes of a horizon, for one solver of qpsolvers."""
 
     def __init__(self, solver: str, preview: Preview) -> None:
         try:
@@ -102,7 +108,7 @@ class WalkingQp:
             self._matrices = tuple(csc_matrix(matrix) for matrix in self._matrices)
 
     def jerk(self, axis: Axis) -> np.ndarray:
-        """The jerk of each period. Raises MissingError if the solver finds none."""
+        """The jerk in each period. Raises MissingError if the solver finds none."""
         q, h = self._preview.gradient_and_bounds(axis)
         hessian, constraints = self._matrices
         found = self._solve_qp(hessian, q, constraints, h, solver=self._solver)
