@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 WALKS = 1000
 KINDS_DRAWN = ("misses", "false-alarms")
-DRAWN = 10  # of the worst misses, and of the worst false alarms
+DRAWN = 10  # number of misses and of false alarms that are drawn
 EMULATED_FILES = ("evaluation.json", "walks.csv", "roc.png", "region.png")
 FALLS_FILES = ("falls.csv", "falls-roc.png")
 RELIABILITY = "reliability.png"
@@ -48,12 +48,12 @@ FILES = (
     *itertools.chain(*DRAWINGS.values()),
 )
 Figures = Mapping[str, Any]
-Writer = Callable[[Path], Iterable[str]]  # to a new folder; gives names and what they show
+Writer = Callable[[Path], Iterable[str]]  # writes to a new folder; yields file names with captions
 
 
 @dataclass(frozen=True)
 class Part:
-    """Some walkers by name: their figures, their scores on exact inputs, and what writes files."""
+    """Some walkers by name: their figures, their scores for exact inputs, and a writer of files."""
 
     figures: dict[str, Figures]
     scores: dict[str, Sequence["Score"]]
@@ -85,7 +85,7 @@ def add_parser(subparsers: Any) -> None:
         type=Path,
         metavar="FOLDER",
         help="recorded falls: walkers.csv, walks.csv, states/WALKER.csv.gz. Each walker has its "
-        "own mass and height, if --config, --mass or --height do not say otherwise",
+        "own mass and height, unless --config, --mass or --height give them",
     )
     add_input(
         parser,
@@ -101,10 +101,13 @@ def add_parser(subparsers: Any) -> None:
         type=Path,
         metavar="FOLDER",
         help=f"for scores.json; of emulated wearers {', '.join(EMULATED_FILES)}; of --falls "
-        f"{', '.join(FALLS_FILES)}, and the worst misses and false alarms, drawn one by one",
+        f"{', '.join(FALLS_FILES)}, and a plot of each of the worst misses and false alarms",
     )
     add_output(
-        parser, "--json", metavar="FILE", help="the figures of all walkers side by side; - prints"
+        parser,
+        "--json",
+        metavar="FILE",
+        help="all figures as JSON; - for standard output",
     )
     add_body_options(parser)
     parser.set_defaults(run=run)
@@ -271,7 +274,7 @@ def _print_detection(console: "Console", detections: dict[str, "Detection"]) -> 
         "... at least 0.24 s before": lambda d: _percent(d.timely),
         "lead time, median": lambda d: f"{_number(d.lead_median_s, 2)} s",
         "lead time, 10th percentile": lambda d: f"{_number(d.lead_tenth_s, 2)} s",
-        "alarms among those who stayed up": lambda d: _percent(d.false_alarms),
+        "alarms in walks without a fall": lambda d: _percent(d.false_alarms),
         "false alarms: of unperturbed steady walking": lambda d: f"{100 * d.alarm_share:.2f} %",
         "... starts and stops included": lambda d: f"{100 * d.moving_alarm_share:.2f} %",
         "falls without a push": lambda d: f"{d.calm_falls}",

@@ -1,1 +1,1 @@
-"""How well the supervisor predicts falls: emulated and recorded walkers, claims of the model."""
+"""How well the supervisor predicts falls, and whether the model's claims hold."""

@@ -11,7 +11,7 @@ FOOT_BREADTH = 0.055
 
 
 def half_foot_m(height_m: float) -> np.ndarray:
-    """Half of the length and breadth of the foot of a person of this height."""
+    """Half the length and breadth of the foot, for a body height."""
     return np.array([FOOT_LENGTH, FOOT_BREADTH]) * height_m / 2
 
 
@@ -30,7 +30,7 @@ def hof_margin_m(
 ) -> np.ndarray:
     """Hof's margin of stability (2005): of the XCoM in the hull of the feet on the ground.
 
-    NaN while no foot is. contact: (n, 2) of bool.
+    NaN if no foot is. contact: (n, 2) of bool.
     """
     standing_m = np.where(contact[..., None], cop_m, cop_m[:, ::-1])
     margin_m = hull_margin_m(xcom_m, standing_m, half_m)

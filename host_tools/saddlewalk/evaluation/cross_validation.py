@@ -1,8 +1,9 @@
-"""Leave one out: each kind of walker is evaluated with what was fitted to the others.
+"""Leave-one-out cross-validation: each kind of walker is evaluated with the fit to the others.
 
-Does one threshold fit all, and can the margin be read as a probability of falling?
+It shows whether one threshold fits all, and whether the margin predicts the probability of a fall.
 
-Emulated wearers are one kind, whichever steps they take; every recorded walker is one of its own.
+Emulated wearers are one kind, with planned or recovery steps; every recorded walker is its own
+kind.
 """
 
 import math
@@ -17,25 +18,25 @@ from saddlewalk.evaluation.scoring import EVIDENCE_S, ROUNDING_S, TIMELY_S, Scor
 HORIZON_S = 1.0  # of the probability: a fall within so long
 THRESHOLDS = np.arange(-0.1, 0.1001, 0.01)  # of the margin
 BINS = np.linspace(0.0, 1.0, 11)
-LEAST_IN_BIN = 20  # ticks, to be shown
+LEAST_IN_BIN = 20  # ticks in a bin that is shown
 EMULATED = "emulated"
 
 
 @dataclass(frozen=True)
 class CrossValidation:
-    """A walker's figures with what was fitted to the others."""
+    """A walker's figures with the threshold and the probability fitted to the others."""
 
-    threshold: float  # of the margin, where the others' timely alarms exceed the false ones most
+    threshold: float  # of the margin: best timely minus false alarms of the others
     timely_pct: float
     alarm_though_upright_pct: float
-    zero_margin_probability: float  # of a fall within HORIZON_S at margin 0, by the others
-    brier: float  # mean square of probability less outcome, over the ticks after a push
-    brier_of_base_rate: float  # of always predicting the walker's own share
+    zero_margin_probability: float  # of a fall within HORIZON_S at margin 0, fitted to the others
+    brier: float  # mean square of probability minus outcome, over the ticks after a push
+    brier_of_base_rate: float  # of a constant prediction: the walker's own share of falls
     reliability: list[tuple[float, float, int]]  # predicted share, observed share, ticks
 
 
 def leave_one_out(scores: Mapping[str, Sequence[Score]]) -> dict[str, CrossValidation]:
-    """By walker; empty unless there are two kinds of pushed walkers."""
+    """Figures by walker; empty unless there are two kinds of pushed walkers."""
     pushed = {name: [s for s in each if s.pushed] for name, each in scores.items()}
     pushed = {name: each for name, each in pushed.items() if _both(each)}
     found = {}
@@ -73,7 +74,7 @@ def _figures(mine: Sequence[Score], others: Sequence[Sequence[Score]]) -> CrossV
 
 
 def _rates(scores: Sequence[Score], threshold: float) -> tuple[float, float]:
-    """Percent of the falls with an alarm in time, and of the others with any."""
+    """Percentage of falls with a timely alarm, and of other walks with any alarm."""
     first_s = [_first_alarm_s(each, threshold) for each in scores]
     pairs = list(zip(scores, first_s, strict=True))
     latest_s = TIMELY_S - ROUNDING_S
@@ -84,7 +85,7 @@ def _rates(scores: Sequence[Score], threshold: float) -> tuple[float, float]:
 
 
 def _first_alarm_s(score: Score, threshold: float) -> float:
-    """After the push; infinite: none."""
+    """Time of the first alarm after the push; infinite if there is none."""
     after_s, margin = score.course.T
     alarms_s = after_s[margin <= threshold]
     return float(alarms_s[0]) if len(alarms_s) else math.inf
@@ -106,7 +107,7 @@ def _probability(line: np.ndarray, margin: np.ndarray) -> np.ndarray:
 
 
 def _fit(walkers: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-    """Logistic regression of falls on the margin by Newton's method; walkers weigh the same."""
+    """Logistic regression of falls on the margin by Newton's method; equal weight per walker."""
     margin, falls = (np.concatenate(parts) for parts in zip(*walkers, strict=True))
     weight = np.concatenate([np.full(len(m), 1.0 / len(m)) for m, _ in walkers])
     design = np.column_stack([np.ones_like(margin), margin])
@@ -131,7 +132,7 @@ def _reliability(predicted: np.ndarray, falls: np.ndarray) -> list[tuple[float, 
 
 def table(found: Mapping[str, CrossValidation]) -> Table:
     shown = Table(
-        title="Leave one out: each kind of walker by thresholds from the others",
+        title="Leave-one-out: each kind of walker with the threshold from the others",
         title_justify="left",
     )
     shown.add_column("")
@@ -140,10 +141,10 @@ def table(found: Mapping[str, CrossValidation]) -> Table:
     rows = {
         "alarm at a margin of": lambda f: f"{f.threshold:+.2f}",
         "... falls 0.24 s before": lambda f: f"{f.timely_pct:.1f} %",
-        "... though it stayed up": lambda f: f"{f.alarm_though_upright_pct:.1f} %",
+        "... walks without a fall": lambda f: f"{f.alarm_though_upright_pct:.1f} %",
         "probability of a fall at margin 0": lambda f: f"{f.zero_margin_probability:.2f}",
         "Brier score": lambda f: f"{f.brier:.3f}",
-        "... of the mere share of falls": lambda f: f"{f.brier_of_base_rate:.3f}",
+        "... of a constant prediction": lambda f: f"{f.brier_of_base_rate:.3f}",
     }
     for label, cell in rows.items():
         shown.add_row(label, *map(cell, found.values()))

@@ -14,24 +14,24 @@ from saddlewalk.verdict import level_name, reason_name
 
 @dataclass(frozen=True)
 class Detection:
-    """Of one kind of wearer. Shares are of 1, NaN if there was nothing to share."""
+    """Results for one kind of wearer. Shares are from 0 to 1, NaN without any walk."""
 
     pushed: int
     fallen: int
     sensitivity: float  # falls with an alarm between push and fall
     timely: float  # falls with an alarm at least WARNING_MIN_S before
-    false_alarms: float  # pushed walks with an alarm though the wearer stayed up
-    lead_median_s: float  # from first alarm to fall
+    false_alarms: float  # pushed walks with an alarm but no fall
+    lead_median_s: float  # from the first alarm to the fall
     lead_tenth_s: float  # 10th percentile
     walking_levels: dict[str, int]  # ticks of unperturbed steady walking
     walking_reasons: dict[str, int]
     moving_levels: dict[str, int]  # starts and stops included
     calm_falls: int  # unperturbed walks that ended in a fall
-    areas: dict[str, dict[str, float]]  # by window of evidence, under the ROC of each margin
+    areas: dict[str, dict[str, float]]  # under each margin's ROC curve, by window of evidence
 
     @property
     def alarm_share(self) -> float:
-        """Of unperturbed steady walking time: announced unstable."""
+        """Share of unperturbed steady walking that is announced unstable."""
         return _share(self.walking_levels.get("unstable", 0), sum(self.walking_levels.values()))
 
     @property
@@ -40,7 +40,7 @@ class Detection:
 
 
 def detection_of(walks: Iterable[Walk]) -> Detection:
-    """Of the walks of one kind of wearer."""
+    """The results for the walks of one kind of wearer."""
     walks = list(walks)
     pushed = [walk for walk in walks if walk.trial.impulse_n_s > 0]
     fallen = [walk for walk in pushed if walk.fell]
@@ -66,7 +66,7 @@ def detection_of(walks: Iterable[Walk]) -> Detection:
 
 
 def recovery_benefit(walks: Iterable[Walk]) -> dict[str, float]:
-    """Effect of the recovery step, on uniformly random pushes."""
+    """Effect of the recovery step on uniformly random pushes."""
     fell: dict[int, dict[str, bool]] = {}
     for walk in walks:
         if walk.trial.impulse_n_s > 0 and walk.trial.cell < 0:
@@ -83,7 +83,7 @@ def recovery_benefit(walks: Iterable[Walk]) -> dict[str, float]:
 
 
 def push_limits(walks: Iterable[Walk]) -> dict[str, dict[int, float]]:
-    """Per kind and cell, N s at which half fall: the mean height of a staircase after its turn."""
+    """Impulse at which half fall, N s, by kind and cell: the staircase's mean after a turn."""
     stairs: dict[str, dict[int, list[Walk]]] = {kind: {} for kind in KINDS}
     for walk in walks:
         if walk.trial.cell >= 0:
@@ -95,14 +95,14 @@ def push_limits(walks: Iterable[Walk]) -> dict[str, dict[int, float]]:
 
 
 def evidence(walks: Sequence[Walk], window: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Which walks ended in a fall, and their least margin; without those where it is unknown."""
+    """Whether each walk ended in a fall, and its lowest margin; without walks of unknown margin."""
     fell = np.array([walk.fell for walk in walks], dtype=bool)
     least = np.array([walk.least[window][name] for walk in walks])
     return known(fell, least)
 
 
 def _height(stair: list[Walk]) -> float:
-    """Geometric mean of the pushes from the first turn on; NaN before it."""
+    """Geometric mean of the pushes from the first turn on; NaN if there was none."""
     stair = sorted(stair, key=lambda walk: walk.trial.index)
     turns = [k for k in range(1, len(stair)) if stair[k].fell != stair[k - 1].fell]
     if not turns:

@@ -1,4 +1,4 @@
-"""Emulated walks in the form in which every walker is scored."""
+"""Emulated walks in the common form for scoring."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ from saddlewalk.table import Cell
 
 
 class TickRecorder:
-    """Records every tick of a walk, with the output of the wearer's supervisor."""
+    """Records every tick of a walk with the supervisor's output."""
 
     def __init__(self, config: Any) -> None:
         body = Body.of(config)
@@ -31,7 +31,9 @@ class TickRecorder:
         self._said.append(score_row(tick.time_s, tick.output))
 
     def parts(self, kind: str, push_s: float, fall_s: float) -> list[tuple[Walk, Announced]]:
-        """The walk from its first tick of walking on; "start_stop" is whole, and also "calm"."""
+        """The walk from its first walking tick on; a "start_stop" walk whole, and its steady part
+        as "calm".
+        """
         walking = np.array(self._modes) == WALKING
         if kind == "start_stop":
             there = {"calm": walking, kind: np.ones_like(walking)}
@@ -56,7 +58,7 @@ class TickRecorder:
 
 
 def _numbers(time_s: float, com_m: complex, seen: Measurement) -> tuple[float, ...]:
-    """In the order of STATE_COLUMNS."""
+    """Values in the order of STATE_COLUMNS."""
     left_m, right_m = (com_m + foot_m for foot_m in seen.feet_m)
     return (
         *(time_s, com_m.real, com_m.imag, seen.height_m),

@@ -41,8 +41,8 @@ matplotlib.use("Agg")
 
 COLOURS = ("black", BLUE, SKY, GREEN, ORANGE, RED, PINK, "0.5")
 DASHES = ("-", "--")
-BEFORE_S, AFTER_S, FALLEN_S = 0.8, 2.4, 0.3  # about the push, and after a fall
-FALL_HEIGHT = 0.75  # of the usual
+BEFORE_S, AFTER_S, FALLEN_S = 0.8, 2.4, 0.3  # shown before the push and after a fall
+FALL_HEIGHT = 0.75  # share of the usual height
 MARGIN_STYLES: dict[str, dict[str, Any]] = {
     "margin": {"color": "black", "lw": 2.6, "label": "margin, of the height"},
     "recovery_margin": {"color": ORANGE, "ls": "--"},
@@ -54,7 +54,7 @@ LEVEL_COLOURS = {name: style.get("color", style.get("facecolor")) for name, styl
 
 
 def draw_rocs(walkers: Mapping[str, Sequence[Score]], path: Path) -> None:
-    """A row for each walker, a column for each window of evidence."""
+    """ROC curves: a row for each walker, a column for each window of evidence."""
     figure = Figure(figsize=(6.5 * len(WINDOWS), 6 * len(walkers)), dpi=110, layout="constrained")
     rows = figure.subplots(len(walkers), len(WINDOWS), squeeze=False)
     for row, (walker, scores) in zip(rows, walkers.items(), strict=True):
@@ -68,7 +68,7 @@ def draw_rocs(walkers: Mapping[str, Sequence[Score]], path: Path) -> None:
             axes.plot([0, 1], [0, 1], color="0.8", lw=0.8)
             axes.set(
                 title=f"{walker}: {longest_s:g} s from the push, to 0.24 s before the fall",
-                xlabel="alarms among those who stayed up",
+                xlabel="alarms in walks without a fall",
                 ylabel="falls announced",
                 aspect="equal",
             )
@@ -77,7 +77,7 @@ def draw_rocs(walkers: Mapping[str, Sequence[Score]], path: Path) -> None:
 
 
 def worst_misses(walks: Sequence[Scored]) -> list[Scored]:
-    """Falls without a timely alarm: those never announced first, then the shortest lead."""
+    """Falls without a timely alarm, the worst first: without any alarm, then by lead time."""
     late = [each for each in walks if _is_late(each.scores["exact"])]
     return sorted(late, key=lambda each: np.nan_to_num(each.scores["exact"].lead_s, nan=-1))
 
@@ -87,7 +87,7 @@ def _is_late(score: Score) -> bool:
 
 
 def worst_false_alarms(walks: Sequence[Scored]) -> list[Scored]:
-    """Walks that went on though they were announced unstable: the longest alarms first."""
+    """Walks with an alarm but no fall, the longest alarms first."""
 
     def unstable_ticks(each: Scored) -> int:
         return sum(each.scores["exact"].exposed["unstable"].values())
@@ -97,7 +97,7 @@ def worst_false_alarms(walks: Sequence[Scored]) -> list[Scored]:
 
 
 def draw_walk(scored: Scored, path: Path) -> None:
-    """About the push: from above, height, margins, and each tick's level with its reason."""
+    """Draw the time around the push: from above, height, margins, and level with reason."""
     walk, announced = scored.walk, scored.exact
     t_s = walk.states.t_s
     end_s = min(walk.push_s + AFTER_S, walk.fall_s + FALLEN_S if walk.fell else np.inf)
@@ -162,7 +162,7 @@ def _draw_push(axes: Axes, walk: Walk) -> None:
 
 
 def _name_reasons(axes: Axes, t_s: np.ndarray, level: np.ndarray, reason: np.ndarray) -> None:
-    """Above the lanes, where either changes."""
+    """Write level and reason above the lanes where either changes."""
     top = len(LANES) - 0.4
     changed = np.flatnonzero(np.diff(level, prepend=-1) | np.diff(reason, prepend=-1))
     for k in changed:

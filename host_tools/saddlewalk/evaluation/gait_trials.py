@@ -18,8 +18,8 @@ from saddlewalk.gait.recording import Recording, load_recording
 from saddlewalk.ticks import Messages
 from saddlewalk.verdict import level_name, reason_name, ticks_in
 
-FIRST_S = 1.0  # of a recording, in which a level may still be unknown
-MANIFEST = "manifest.csv"  # beside the trials: file, height_m, mass_kg where they are known
+FIRST_S = 1.0  # beginning of a recording, in which the level may be unknown
+MANIFEST = "manifest.csv"  # in the folder of the trials: file, and height_m, mass_kg if known
 
 
 @dataclass(frozen=True)
@@ -30,13 +30,13 @@ class GaitTrial:
     height_m: float
     speed_m_s: float
     levels: dict[str, int]  # ticks between the first heel strike and the last
-    reasons: dict[str, int]  # of those that are not stable
-    settled: Levels  # of all ticks after the first FIRST_S
-    level_after_s: float  # from its begin to the first level that is known; inf: never
+    reasons: dict[str, int]  # reasons of the ticks that are not stable
+    settled: Levels  # levels of all ticks after the first FIRST_S
+    level_after_s: float  # from the beginning to the first known level; inf: never
 
 
 def score_folder(folder: Path, config: Any) -> list[GaitTrial]:
-    """Every CSV of a folder, each with the body of its manifest or else that of config.
+    """Score every CSV file of a folder, with the body in its manifest or else that of config.
 
     Raises UserError if there is none, or one cannot be read.
     """
@@ -70,7 +70,7 @@ def score_trial(path: Path, config: Any) -> GaitTrial:
 
 
 def _walking(recording: Recording, gait: Gait) -> tuple[float, float]:
-    """From the first heel strike to the last, s from the start of the trial; the whole without."""
+    """First and last heel strike, s from the start; without any, the whole trial."""
     strikes = np.concatenate([foot.heel_strikes for foot in gait.events])
     if len(strikes) == 0:
         return 0.0, math.inf
@@ -95,7 +95,7 @@ def _measurement(messages: Messages) -> Measurement:
 
 
 def _bodies(manifest: Path) -> dict[str, dict[str, float]]:
-    """Fields of saddle_config_t by file name; without a manifest, none."""
+    """Fields of saddle_config_t by file name; empty without a manifest."""
     if not manifest.exists():
         return {}
     fields = {"height_m": "body_height_m", "mass_kg": "body_mass_kg"}

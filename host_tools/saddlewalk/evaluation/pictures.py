@@ -33,7 +33,9 @@ VERDICTS = (
 
 
 def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
-    """Evidence until WARNING_MIN_S before a fall, and of the first SOON_S, for each kind."""
+    """ROC curves for each kind of wearer: evidence to WARNING_MIN_S before a fall, and of the first
+    SOON_S.
+    """
     windows = WINDOWS[1:]
     figure = Figure(figsize=(13, 12), dpi=110, layout="constrained")
     for row, kind in zip(figure.subplots(len(KINDS), len(windows)), KINDS, strict=True):
@@ -46,7 +48,7 @@ def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
             axes.plot([0, 1], [0, 1], color="0.8", lw=0.8)
             axes.set(
                 title=f"takes {kind} steps; evidence: {window}",
-                xlabel="alarms among those who stayed up",
+                xlabel="alarms in walks without a fall",
                 ylabel="falls predicted",
                 aspect="equal",
             )
@@ -55,7 +57,7 @@ def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
 
 
 def draw_reliability(found: Mapping[str, CrossValidation], path: Path) -> None:
-    """Observed against predicted falls, of each walker with the fit to the others."""
+    """Observed over predicted falls: each walker with the fit to the others."""
     figure = Figure(figsize=(6, 6), dpi=110, layout="constrained")
     axes = figure.subplots()
     axes.plot([0, 1], [0, 1], color="0.8", lw=0.8)
@@ -67,7 +69,7 @@ def draw_reliability(found: Mapping[str, CrossValidation], path: Path) -> None:
             predicted, observed, s=sizes, color=COLOURS[index % 8], label=name.replace("_", " ")
         )
     axes.set(
-        title="Falls within a second, predicted from the other walkers",
+        title="Falls within a second, predicted by the fit to the other walkers",
         xlabel="predicted from the margin",
         ylabel="observed",
         aspect="equal",
@@ -77,7 +79,7 @@ def draw_reliability(found: Mapping[str, CrossValidation], path: Path) -> None:
 
 
 def draw_region(config: Any, path: Path) -> None:
-    """can_stop, alone and with the XCoM, against the pendulum with bounded ankle work."""
+    """can_stop, alone and with the XCoM, compared with the pendulum with bounded ankle work."""
     claims = ("can_stop", "stays")
     figure = Figure(figsize=(15, 13), dpi=100, layout="constrained")
     rows = figure.subplots(len(claims) * len(PLANES), len(POSTURES))

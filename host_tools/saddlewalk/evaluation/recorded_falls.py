@@ -1,7 +1,7 @@
 """Recorded falls of independent walkers, scored by the core without a command.
 
 A folder holds walkers.csv, walks.csv and states/WALKER.csv.gz, 50 rows a second. Every fourth row
-is a tick, and each run begins with another of its first four.
+is a tick; the first tick is one of a run's first four rows, in turn.
 """
 
 import cmath
@@ -39,7 +39,7 @@ from saddlewalk.workers import Workers, run_tasks
 
 ROWS_A_TICK = round(TICK_S / 0.02)
 COM_HEIGHT = 0.57  # of the body's height
-DECIMALS = 4  # of what the core is given, as in the recordings
+DECIMALS = 4  # decimals of the core's inputs, as in the recordings
 PUSHED_KINDS = ("staircase", "random")
 KINDS = ("calm", "start_stop", *PUSHED_KINDS)
 RUNS_A_TASK = 20
@@ -60,7 +60,7 @@ class Walker:
 
 @dataclass(frozen=True)
 class Scored:
-    """A run, the announcements on exact inputs, and its scores by INPUTS."""
+    """A run, the supervisor's output for exact inputs, and its scores by INPUTS."""
 
     walk: Walk
     exact: Announced
@@ -68,7 +68,7 @@ class Scored:
 
 
 def read_walkers(folder: Path) -> list[Walker]:
-    """Raises UserError if the folder is not one of recorded falls."""
+    """Raises UserError if the folder does not hold recorded falls."""
     source = str(folder / "walkers.csv")
     walkers = []
     for line, row in read_texts(source, ["walker", *WALKER_NUMBERS]):
@@ -91,7 +91,7 @@ def _positive(source: str, line: int, row: Mapping[str, str]) -> dict[str, float
 
 
 def read_walks(folder: Path, walkers: Sequence[Walker]) -> dict[str, list[Walk]]:
-    """The walks of each walker, in the order of walks.csv. Every file is read once."""
+    """The walks of each walker, in the order of walks.csv. Each file is read once."""
     source = str(folder / "walks.csv")
     rows: dict[str, dict[str, dict[str, Any]]] = {walker.name: {} for walker in walkers}
     for line, row in read_texts(source, [*WALK_TEXTS, *WALK_NUMBERS]):
@@ -139,7 +139,7 @@ def _check_walk(where: str, row: Mapping[str, str], numbers: Mapping[str, float]
     for column in ("push_time_s", "push_direction_deg", "push_n_s"):
         if math.isfinite(numbers[column]) != (row["kind"] in PUSHED_KINDS):
             pushed = " and ".join(PUSHED_KINDS)
-            raise UserError(f"{where}, {column}: {row[column]!r} must be there in {pushed} alone")
+            raise UserError(f"{where}, {column}: {row[column]!r} must be given in {pushed} only")
     if not 0 < numbers["normal_com_height_m"] < math.inf:
         text = row["normal_com_height_m"]
         raise UserError(f"{where}, normal_com_height_m: {text!r} must be above 0")
@@ -159,7 +159,7 @@ def _walks_of(folder: Path, walker: Walker, runs: dict[str, dict[str, Any]]) -> 
 
 
 def _read_states(source: str, first_rows: Mapping[str, int]) -> dict[str, list[list[float]]]:
-    """The ticks of each run, from its first row on; those of other runs are left out."""
+    """The ticks of each run in first_rows, from its first row on."""
     counts = dict.fromkeys(first_rows, 0)
     ticks: dict[str, list[list[float]]] = {run: [] for run in first_rows}
     for line, row in read_texts(source, ["run", *STATE_COLUMNS]):
@@ -176,7 +176,7 @@ def _read_states(source: str, first_rows: Mapping[str, int]) -> dict[str, list[l
 
 
 def _check_state(where: str, numbers: Mapping[str, float], last_s: float) -> None:
-    """Reject rows without what the scores need; other numbers may be missing."""
+    """Reject a row without the numbers that scores need; others may be missing."""
     if not last_s < numbers["t_s"] < math.inf:
         raise UserError(f"{where}, t_s: {numbers['t_s']:g} must be a time after {last_s:g} s")
     for column in ("left_contact", "right_contact"):
@@ -189,7 +189,7 @@ def score_walks(
 ) -> list[Scored]:
     """Each walk with the saddle_config_t of its walker; progress(walks done).
 
-    The same scores in the same order, whoever does the work.
+    The same scores in the same order, whatever the workers.
     """
     runs = [(walk, config_bytes(config), seed) for walk, config in walks]
     tasks = [(runs[first : first + RUNS_A_TASK],) for first in range(0, len(runs), RUNS_A_TASK)]
@@ -210,7 +210,7 @@ def _score(walk: Walk, image: bytes, seed: int) -> Scored:
 
 
 def supervise(walk: Walk, seen: States, config: Any) -> Announced:
-    """The announcements of a supervisor without a command for these states."""
+    """The output for these states of a supervisor without commands."""
     rows = scored_rows(recording_core(config), Command(), _measurements(walk.name, seen))
     return announced(walk, list(rows), seen)
 
@@ -225,7 +225,7 @@ def _measurements(name: str, seen: States) -> Iterator[tuple[float, Any]]:
 
 
 def _with_noise(states: States, random: np.random.Generator) -> States:
-    """As the emulated wearer's sensors would measure it; the ground is where it was."""
+    """The states with the noise of the emulated wearer's sensors; contacts are unchanged."""
     noise, ticks = Noise(), len(states.t_s)
     height_m = random.normal(0, noise.position_m, (ticks, 1))
     return States(

@@ -18,14 +18,14 @@ from saddlewalk.emulation.wearer import Body
 from saddlewalk.evaluation.baselines import hull_corners_m
 
 TIME_STEP_S, DURATION_S = 0.02, 3.0
-GAIN_MAX = 4.0  # of the CoP's way beyond the XCoM, so that the work is that of an unhurried stop
+GAIN_MAX = 4.0  # limit of the CoP's distance beyond the XCoM, for the work of an unhurried stop
 GRID = 9  # states along each of x, y, vx, vy
 EXTENT = np.array([0.5, 0.3, 1.2, 0.8])  # m, m, m/s, m/s to either side
 
 CLAIMS = {
     "bos": "CoM in BoS",
     "can_stop": "can_stop",
-    "stays": "can_stop, XCoM in BoS",  # as the supervisor reads it: by stop_margin_m
+    "stays": "can_stop, XCoM in BoS",  # as in the supervisor: by stop_margin_m
 }
 
 
@@ -51,7 +51,7 @@ POSTURES = (
 
 @dataclass(frozen=True)
 class Region:
-    """Of one posture, for (n, 4) states x, y, vx, vy from midway between the CoPs."""
+    """The results of a posture, for (n, 4) states x, y, vx, vy, from midway between the CoPs."""
 
     posture: Posture
     states: np.ndarray
@@ -60,9 +60,9 @@ class Region:
     claims: dict[str, np.ndarray]  # by the keys of CLAIMS
 
     def confusion(self, claim: str) -> dict[str, int]:
-        """States by what is claimed and what is true; `false_safe` breaks the paper's claim.
+        """Counts of states by claim and truth; `false_safe` contradicts the paper.
 
-        `false_safe_by_work`: of those, the ones that stop with more ankle work than W_max.
+        `false_safe_by_work`: the false_safe states that stop with more ankle work than W_max.
         """
         claimed, truth = self.claims[claim], self.stops_within_work
         strained = self.stops & ~truth
@@ -102,10 +102,10 @@ def explore(posture: Posture, states: np.ndarray, config: Any) -> Region:
 def bring_to_rest(
     posture: Posture, states: np.ndarray, body: Body
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Whether each state comes to rest, and the work that the ankles absorb on the way.
+    """Whether each state comes to rest, and the work that the ankles absorb until then.
 
-    A state whose XCoM is in the soles after DURATION_S is at rest or on its straight way there;
-    from outside it departs.
+    A state whose XCoM is inside the soles after DURATION_S is at rest or will be; outside them it
+    diverges.
     """
     w = body.natural_frequency_rad_s
     standing = posture.standing_m
@@ -134,7 +134,9 @@ def _soles(standing: np.ndarray, body: Body) -> np.ndarray:
 
 
 def _reach(soles: np.ndarray, point: np.ndarray, direction: np.ndarray) -> np.ndarray:
-    """How far along direction each point may go in the soles, up to GAIN_MAX; below 0: back."""
+    """How far each point can move along direction within the soles, up to GAIN_MAX; negative if
+    outside.
+    """
     edge = np.roll(soles, -1, axis=0) - soles
     inward = np.stack([-edge[:, 1], edge[:, 0]], axis=1)
     depth = (inward * (point[:, None, :] - soles)).sum(axis=2)
@@ -144,7 +146,7 @@ def _reach(soles: np.ndarray, point: np.ndarray, direction: np.ndarray) -> np.nd
 
 
 def _nearest_on(standing: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """On the line between the standing CoPs, along which load passes from foot to foot."""
+    """The nearest point on the line between the standing CoPs, along which load shifts."""
     apart = standing[-1] - standing[0]
     squared = float(apart @ apart)
     along = (

@@ -1,6 +1,6 @@
 """How well falls were announced: one set of definitions for emulated, simulated and recorded walks.
 
-A walk is what happened, an announcement the supervisor's output for it, tick by tick. Evidence is
+A Walk is what happened, Announced is the supervisor's output for it, tick by tick. Evidence is
 the output after the push, up to 0.24 s before the fall: after that the fall is obvious.
 """
 
@@ -21,16 +21,16 @@ from saddlewalk.verdict import level_name, reason_name
 TIMELY_S = 3 * TICK_S
 ROUNDING_S = 1e-6  # of differences between times of a table
 EVIDENCE_S = 3.0  # after a push
-# Key of the figures -> how long after the push evidence is collected, at most.
+# Name of a window -> the longest time after the push in which evidence is collected.
 WINDOWS = {"roc_to_0.24_s_before": EVIDENCE_S, "roc_to_0.24_s_before_in_first_0.4_s": 0.4}
-SETTLED_S = {"calm": 2.0, "start_stop": 0.0}  # by kind of walk, before its levels count
+SETTLED_S = {"calm": 2.0, "start_stop": 0.0}  # by kind of walk: time before its levels count
 INPUTS = ("exact", "noise", "one_tick_late")
-STUMBLE_S = 1.0  # about an alarm
-STUMBLE_M = 0.05  # that the XCoM leaves the feet by
-WIDE_STEP = 2.0  # of the usual width
-FIRST_ROWS_S = 0.5  # of a recording, that are not yet usual
+STUMBLE_S = 1.0  # before and after an alarm
+STUMBLE_M = 0.05  # distance of the XCoM outside the feet
+WIDE_STEP = 2.0  # share of the usual width
+FIRST_ROWS_S = 0.5  # first part of a recording, which is not steady yet
 
-# Margin -> column of the supervisor's scores and sign: the less, the nearer to a fall.
+# Margin -> column of the supervisor's scores, and its sign: lower is nearer to a fall.
 SCORED_MARGINS = {
     "level": ("level", -1),
     "ebos_xcom": ("ebos_xcom_m", 1),
@@ -70,7 +70,7 @@ class Walk:
     kind: str  # calm, start_stop, staircase or random
     push_s: float
     fall_s: float
-    ground_s: float  # first contact of another part than a foot
+    ground_s: float  # first ground contact of another part than a foot
     states: States
     half_sole_m: np.ndarray  # half of its length and width
     pendulum_m: float
@@ -86,7 +86,7 @@ class Walk:
 
 @dataclass(frozen=True)
 class Announced:
-    """The output at each tick of a walk: numbers of LEVELS and REASONS, and each margin."""
+    """The supervisor's output at each tick: indices of LEVELS and REASONS, and each margin."""
 
     level: np.ndarray
     reason: np.ndarray
@@ -95,29 +95,29 @@ class Announced:
 
 @dataclass(frozen=True)
 class Stumble:
-    """What an alarm was about, though the walker stayed up; within STUMBLE_S of it."""
+    """What happened within STUMBLE_S of an alarm without a fall."""
 
     xcom_out: bool  # the XCoM left the feet by STUMBLE_M
-    further_out: bool  # by so much more than before the push
+    further_out: bool  # this much more than before the push
     wide_step: bool
 
 
 @dataclass(frozen=True)
 class Score:
-    """What came of a walk and its announcements."""
+    """The score of a walk and its announcements."""
 
     name: str
     kind: str
     push_s: float
     fall_s: float
     ground_s: float
-    alarm_s: float  # first unstable tick from the push on and before a fall
+    alarm_s: float  # first unstable tick between the push and a fall
     alarm_at_push: bool
     least: dict[str, dict[str, float]]  # by window and margin
-    levels: Levels  # of a walk without a push, once settled
+    levels: Levels  # of a walk without a push, after its first part
     exposed: Levels  # from the push to the fall, or to the end
     course: np.ndarray  # (n, 2): time after the push and margin, up to the fall or the end
-    stumble: Stumble | None  # of an alarm though it stayed up
+    stumble: Stumble | None  # of an alarm without a fall
     out_before_push: bool  # the XCoM left the feet by STUMBLE_M
 
     @property
@@ -138,12 +138,12 @@ class Score:
 
     @property
     def lead_to_ground_s(self) -> float:
-        """The same to the fall or the ground, whichever comes first after the push."""
+        """Lead time to the fall or to ground contact, whichever comes first after the push."""
         ground_s = self.ground_s if self.ground_s > self.push_s else self.fall_s
         return min(self.fall_s, ground_s) - self.alarm_s
 
     def row(self) -> dict[str, Cell]:
-        """For a table of walks."""
+        """A row of a table of walks."""
         return {
             **{name: getattr(self, name) for name in "name kind push_s fall_s alarm_s".split()},
             **{
@@ -189,7 +189,7 @@ def announced(walk: Walk, rows: Sequence[Sequence[Cell]], seen: States) -> Annou
 
 
 def one_tick_late(announced: Announced) -> Announced:
-    """The same if every measurement came a tick later; at the first tick there is none."""
+    """The announcements if every measurement came a tick later; the first tick has none."""
 
     def delayed(values: np.ndarray, first: float) -> np.ndarray:
         return np.concatenate([[first], values[:-1]]).astype(values.dtype)
@@ -258,7 +258,7 @@ def _levels_at(announced: Announced, there: np.ndarray) -> Levels:
 
 
 def levels_in(announced: Iterable[Iterable[int]]) -> Levels:
-    """How many ticks had each level, by their reasons; announced: numbers of level and reason."""
+    """Number of ticks at each level, by reason."""
     levels: Levels = {name: {} for name in LEVELS}
     for (level, reason), ticks in Counter(map(tuple, announced)).most_common():
         levels[level_name(level)][reason_name(reason)] = ticks
@@ -266,9 +266,9 @@ def levels_in(announced: Iterable[Iterable[int]]) -> Levels:
 
 
 def figures(scores: Sequence[Score], config: Mapping[str, str]) -> dict[str, Any]:
-    """All figures of a walker by name, percentages of 100; NaN where there is nothing to share.
+    """All figures of a walker by name, in percent or seconds; NaN without data.
 
-    config: the lines of the configuration that the supervisor had.
+    config: the configuration of its supervisor, as text.
     """
     pushed = [each for each in scores if each.pushed]
     return {
@@ -336,7 +336,7 @@ def _steady(scores: Sequence[Score]) -> dict[str, Any]:
 
 
 def calm_figures(levels: Sequence[Levels]) -> dict[str, Any]:
-    """The output for steady walking without a push."""
+    """Figures of steady walking without a push."""
     return {
         "calm": shares(levels),
         **{
@@ -363,7 +363,7 @@ def shares(levels: Sequence[Levels]) -> dict[str, float]:
 
 
 def reason_shares(levels: Sequence[Levels], level: str) -> dict[str, float]:
-    """Of all ticks, those at this level for each reason, in percent."""
+    """Percentage of all ticks at this level, by reason."""
     total = sum(_reasons(levels, name).total() for name in LEVELS)
     return {why: 100 * n / total for why, n in _reasons(levels, level).most_common()}
 
@@ -380,7 +380,7 @@ def _areas(pushed: Sequence[Score], window: str) -> dict[str, float]:
 
 
 def evidence(pushed: Sequence[Score], window: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Which walks ended in a fall, and the least of a margin in each."""
+    """Whether each walk ended in a fall, and its lowest margin."""
     return known(
         np.array([each.fell for each in pushed], dtype=bool),
         np.array([each.least[window][name] for each in pushed]),
@@ -388,15 +388,16 @@ def evidence(pushed: Sequence[Score], window: str, name: str) -> tuple[np.ndarra
 
 
 def known(fell: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Without the walks whose margin was never known."""
+    """Leave out walks whose margin was never known."""
     there = np.isfinite(least)
     return fell[there], least[there]
 
 
 def area(fell: np.ndarray, least: np.ndarray) -> float:
-    """Under the ROC: the share of pairs of a fall and none in which the fall had less margin.
+    """Area under the ROC curve: the share of pairs of a fall and a walk without, in which the fall
+    had the lower margin.
 
-    A tie is half; NaN without such a pair.
+    A tie counts half; NaN without any pair.
     """
     if not fell.any() or fell.all():
         return math.nan
@@ -405,7 +406,7 @@ def area(fell: np.ndarray, least: np.ndarray) -> float:
 
 
 def roc(fell: np.ndarray, least: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rates of false alarms and of announced falls as the threshold of a margin rises."""
+    """Rates of false alarms and of announced falls, by rising threshold of a margin."""
     thresholds = np.unique(least)
     below = least[None, :] <= thresholds[:, None]
     false = below[:, ~fell].mean(axis=1) if (~fell).any() else np.zeros(len(thresholds))

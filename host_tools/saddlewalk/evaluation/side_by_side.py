@@ -1,4 +1,4 @@
-"""Emulated wearers, walking machines and recorded people, by one set of definitions."""
+"""Tables that compare emulated wearers, walking machines and recorded people."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -27,7 +27,7 @@ Figures = Mapping[str, Any]
 
 
 def walker_figures(scores: Mapping[str, Sequence[Score]], config: Mapping[str, str]) -> Figures:
-    """Those on exact inputs, if any; those on the other INPUTS under their names.
+    """Figures for exact inputs, if any, and for the other INPUTS under their names.
 
     scores: by INPUTS.
     """
@@ -36,7 +36,7 @@ def walker_figures(scores: Mapping[str, Sequence[Score]], config: Mapping[str, s
 
 
 def people_figures(trials: Sequence[GaitTrial]) -> Figures:
-    """Of people who did not fall: steady walking alone."""
+    """Figures of people who did not fall: steady walking only."""
     return {
         "trials": len(trials),
         "level_known_after_s": max(trial.level_after_s for trial in trials),
@@ -45,7 +45,7 @@ def people_figures(trials: Sequence[GaitTrial]) -> Figures:
 
 
 def tables(results: Mapping[str, Figures], inputs: str) -> list[Table]:
-    """Of walkers by name, on one of INPUTS. People are recorded once: on exact inputs."""
+    """Tables of all walkers, for one of INPUTS. People are only in those of exact inputs."""
     shown = {
         name: result if inputs == "exact" else result[inputs]
         for name, result in results.items()
@@ -75,7 +75,7 @@ def _table(title: str, shown: Mapping[str, Figures]) -> Table:
 
 
 def _cell(cell: Callable[[Figures], str], result: Figures) -> str:
-    """A walker's figure; "-" where its recordings cannot have it."""
+    """A walker's figure; "-" if its recordings do not have it."""
     try:
         return cell(result)
     except KeyError:
@@ -110,7 +110,7 @@ ROWS: tuple[tuple[str, Callable[[Figures], str]], ...] = (
     ("... at least 0.24 s before", _percent("timely_pct")),
     ("lead time, median", _seconds("lead_median_s")),
     ("lead time, 10th percentile", _seconds("lead_p10_s")),
-    ("an alarm, though it stayed up", _percent("alarm_though_upright_pct")),
+    ("an alarm without a fall", _percent("alarm_though_upright_pct")),
     ("... of random pushes", _percent("of_random_pushes_pct")),
     *((f"steady walking {level}", _percent("calm", f"{level}_pct")) for level in LEVELS),
     ("... of so many minutes", lambda result: f"{result['calm']['minutes']:.1f}"),

@@ -43,11 +43,11 @@ STAIR, FINE_STAIR = 1.5, 1.15  # until the first turn, and from then on
 PUSH_FROM_S, PUSH_TO_S = 6.0, 8.0  # after several steady strides; longer than a stride
 OBSERVED_S = 6.0  # after a push
 EVIDENCE_S = 3.0  # margins are searched for this long after a push, or until the fall
-WARNING_MIN_S = 3 * TICK_S  # before a fall the CoM itself gives it away
-SOON_S = 5 * TICK_S  # evidence to warn by, from the beginning of the push
+WARNING_MIN_S = 3 * TICK_S  # later, the CoM itself shows the fall
+SOON_S = 5 * TICK_S  # first part of the evidence, from the beginning of the push
 WINDOWS = ("to the fall", "to 0.24 s before", "first 0.4 s")
 HEEL_STRIKE_RAD = math.radians(10)
-CALM_SHARE = 0.1  # walks without a push, beside those with one
+CALM_SHARE = 0.1  # walks without a push, as a share of those with one
 EXACT_SENSORS = Noise(position_m=0.0, velocity_m_s=0.0)
 START_S, STOP_S, CALM_S = 1.0, 25.0, 30.0
 
@@ -61,7 +61,7 @@ FIELDS = (
 ).split()
 TICK = np.dtype([(name, float) for name in FIELDS])
 
-# Evidence of stability, the less the worse: name in tables -> what it is in a tick.
+# Margins by their name in tables; lower is worse.
 MARGINS: dict[str, Callable[[Any], Any]] = {
     "XCoM in I-BoS": lambda ticks: ticks["mos_xcom_m"],
     "XCoM in E-BoS": lambda ticks: ticks["ebos_xcom_m"],
@@ -162,7 +162,7 @@ def evaluate(
 ) -> list[Walk]:
     """Both kinds of wearer, pushed `walks` times each and unperturbed; progress(walks done).
 
-    The same walks in the same order, whoever does the work.
+    The same walks in the same order, whatever the workers.
     """
     image = config_bytes(config)
     chains = _chains(walks) + [[-1 - k] for k in range(calm_walks(walks))]
@@ -172,7 +172,7 @@ def evaluate(
 
 
 def calm_walks(walks: int) -> int:
-    """How many walks of a kind are unperturbed, beside so many that are pushed."""
+    """Number of unperturbed walks of a kind, for a number of pushed ones."""
     return max(math.ceil(walks * CALM_SHARE), 1)
 
 

@@ -1,6 +1,6 @@
 """Emulated walks with injected faults, and whether the firmware stayed safe.
 
-In lockstep a walk goes by a clock of its own, in one process: frames and their codec, CRC, counters
+In lockstep a walk has a simulated clock, in one process: frames and their codec, CRC, counters
 and ages are those of the firmware's libraries, and nothing else decides when a frame arrives.
 """
 
@@ -37,18 +37,18 @@ class Outcome:
 
     fault: Fault
     live: bool
-    detected: int | None  # the tick in which the firmware reported a problem
+    detected: int | None  # tick in which the firmware reported a problem
     state: str  # of STATES
-    violations: tuple[str, ...]  # none: safe
+    violations: tuple[str, ...]  # empty: safe
     blind: (
         int  # ticks with a level from data that are older than the limit, unknown to the firmware
     )
-    forged: int  # accepted frames of other senders
+    forged: int  # accepted frames from other senders
     fell: bool
 
 
 class Device:
-    """The firmware as saddlewalk-host runs it, but in this process and by the caller's clock."""
+    """The firmware as saddlewalk-host runs it, in this process and by the caller's clock."""
 
     def __init__(self, config: Any) -> None:
         """config: a saddle_config_t of saddlewalk.config."""
@@ -66,7 +66,7 @@ class Device:
         lib.saddle_inbox_init(self._inbox, lib.SADDLE_SOURCE_NONE)
 
     def take(self, frame: can.Message, time_us: int) -> bool:
-        """A frame that came at time_us; whether it was accepted."""
+        """Receive a frame at time_us; returns whether it was accepted."""
         before = self._inbox.receiver.accepted
         data = bytes(frame.data)
         library().saddle_inbox_take_frame(
@@ -75,7 +75,7 @@ class Device:
         return self._inbox.receiver.accepted != before
 
     def tick(self, time_us: int) -> Messages:
-        """One tick, as sent on CAN."""
+        """Run one tick; returns its messages as sent on CAN."""
         lib, output = library(), self._output
         self._tick_us = time_us
         lib.saddle_tick(self._context, lib.saddle_inbox_read(self._inbox, time_us), output)
@@ -120,7 +120,9 @@ def run(
     config: Any,
     plant: PlantChoice = POINT_MASS,
 ) -> tuple[Outcome, list[Messages]]:
-    """Walk `number` with the scenario's fault `index`, in lockstep; and the ticks' messages."""
+    """Walk `number` with the scenario's fault `index` in lockstep: outcome and messages of all
+    ticks.
+    """
     random = np.random.default_rng([seed, index, number])
     fault = scenario.faults[index]
     occurrence = draw(fault, random)
@@ -151,7 +153,7 @@ def run(
 
 @dataclass(frozen=True)
 class EndlessWalk:
-    """The command of a walk that never ends."""
+    """A walk command that never changes."""
 
     speed_m_s: float
 
@@ -211,7 +213,7 @@ def campaign(
     progress: Callable[[int], None],
     plant: PlantChoice = POINT_MASS,
 ) -> list[Outcome]:
-    """`runs` walks with each fault, in lockstep; the same whoever runs them. progress(walks)."""
+    """`runs` walks with each fault, in lockstep. progress(walks done). Independent of `workers`."""
     image = core.config_bytes(config)
     tasks = [(scenario, index, runs, seed, image, plant) for index in range(len(scenario.faults))]
     return run_tasks(_work, tasks, workers, progress)
@@ -237,13 +239,13 @@ class Row:
     states: dict[str, int]  # of STATES, those reached
     unsafe: int  # walks with a violation
     violations: dict[str, int]
-    blind: int  # ticks, the most of a walk
+    blind: int  # ticks, maximum over the walks
     forged: int
     fell: int
 
 
 def rows_of(outcomes: Iterable[Outcome]) -> list[Row]:
-    """In the order of the outcomes."""
+    """One row for each fault, in the order of the outcomes."""
     groups: dict[tuple[Fault, bool], list[Outcome]] = {}
     for outcome in outcomes:
         groups.setdefault((outcome.fault, outcome.live), []).append(outcome)

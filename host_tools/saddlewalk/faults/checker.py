@@ -14,7 +14,7 @@ from saddlewalk.transport import wire
 KNEE_HEIGHT = 0.285  # of the body's height
 COM_SPEED_M_S = 6.0
 LONGEST_STEP = 2.1  # of half_step_max_m
-ROUNDING = 1e-3  # of the wire, at most
+ROUNDING = 1e-3  # maximum on the wire
 STOP_WITHIN_S = 6.0  # from any speed, at the default deceleration
 
 # The most cautious state reported after a fault began, the most cautious first.
@@ -42,16 +42,16 @@ _SCORES_OF_COM = {
 
 @dataclass
 class MessageRecord:
-    """Independent record of one message."""
+    """The checker's own record of a message."""
 
-    came_s: float = -math.inf  # last accepted, by the firmware's clock
-    usable_s: float = -math.inf  # last accepted and usable
-    born_s: float = math.inf  # when the last accepted one was measured
+    came_s: float = -math.inf  # when it was last accepted, by the firmware's clock
+    usable_s: float = -math.inf  # when it was last accepted and usable
+    born_s: float = math.inf  # when the last accepted values were measured
 
 
 @dataclass
 class Checker:
-    """Checks a walk tick by tick. begin_s: of the fault."""
+    """Checks a walk tick by tick. begin_s: when the fault begins."""
 
     config: Any
     body: Any  # saddle_body_t
@@ -61,7 +61,7 @@ class Checker:
     )
     violations: Counter[str] = field(default_factory=Counter)
     detected: int | None = None
-    walk_commanded: bool = False  # by the commands that the firmware must follow
+    walk_commanded: bool = False  # whether the valid commands ask for a walk
     blind: int = 0
     forged: int = 0
     states: set[str] = field(default_factory=set)
@@ -72,7 +72,7 @@ class Checker:
     _ticks_since: int = 0
 
     def arrived(self, arrival: Arrival, time_s: float) -> None:
-        """A frame that was accepted at time_s of the firmware's clock."""
+        """Record a frame that was accepted at time_s of the firmware's clock."""
         name = wire.known_name(arrival.frame.arbitration_id)
         signals = wire.signals(arrival.frame)
         record = self.records[name]
@@ -91,7 +91,7 @@ class Checker:
         return walks or signals["MODE"] == 0
 
     def tick(self, messages: Messages, walk_s: float, clock_s: float) -> None:
-        """A tick at walk_s of the walk and clock_s of the firmware's clock; the walk goes on."""
+        """Check a tick at walk_s of the walk and clock_s of the firmware's clock."""
         health, verdict = messages["HEALTH"], messages["VERDICT"]
         stopping = bool(health["LIMITS"] & library().SADDLE_LIMIT_SAFE_STOP)
         self._detect(messages, walk_s)
@@ -119,7 +119,7 @@ class Checker:
         return limits.get(name, self.config.foot_max_age_s) + 1e-6
 
     def _detect(self, messages: Messages, walk_s: float) -> None:
-        """By the firmware's reports, compared with those before the fault began."""
+        """Detect new reports of the firmware since the fault began."""
         lib, health = library(), messages["HEALTH"]
         reported = lib.SADDLE_LIMIT_SAFE_STOP | lib.SADDLE_LIMIT_TICK_GAP
         faults = int(messages["SCORES_FORCE"]["FAULTS"])
@@ -179,7 +179,7 @@ class Checker:
     def _check_stop(
         self, messages: Messages, stopping: bool, ages_s: dict[str, float], clock_s: float
     ) -> None:
-        """Lost inputs stop the walk, and nothing else stops it unreported."""
+        """Lost inputs must stop the walk, and every other stop must be reported."""
         mode = int(messages["PLAN_EVENTS"]["MODE"])
         ended = mode in (STOPPING, STANDING) and self._mode in (STARTING, WALKING)
         if ended and self.walk_commanded and not stopping:
@@ -197,7 +197,9 @@ class Checker:
 
 
 def plan_bounds(config: Any, body: Any) -> dict[str, tuple[float, float]]:
-    """By message and signal: what the model gives, else what the core calls absurd if measured."""
+    """Bounds by message and signal: from the model, else from the core's range check of
+    measurements.
+    """
     fastest_m_s, upright, turned = body.speed_ceiling_m_s, math.pi / 2, 2 * math.pi
     step_m = LONGEST_STEP * body.half_step_max_m
     leg_m = (KNEE_HEIGHT * config.body_height_m, config.body_height_m)
@@ -225,7 +227,7 @@ def plan_bounds(config: Any, body: Any) -> dict[str, tuple[float, float]]:
 
 
 def _legs_reach(values: dict[str, float], body: Any) -> bool:
-    """No planned foot is further from under the CoM than a leg is long."""
+    """No planned foot is further from below the CoM than the leg's length."""
     com_m = complex(values["PLAN_COM X"], values["PLAN_COM Y"])
     feet_m = (
         complex(values[f"PLAN_{side} X"], values[f"PLAN_{side} Y"]) for side in ("LEFT", "RIGHT")

@@ -1,4 +1,4 @@
-"""Walks in real time with injected faults: frames of the emulated wearer, the host process."""
+"""Walks in real time with faults in the emulated wearer's frames or in the host process."""
 
 import math
 import signal
@@ -26,10 +26,10 @@ from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.lcmbus import open_lcm
 from saddlewalk.workers import Workers, run_tasks
 
-AT_ONCE = 4  # they hardly compute, but must not wait for each other
+AT_ONCE = 4  # processes that mostly sleep, and must not wait for each other
 SLACK_S = 0.1  # from the firmware's tick until it is checked
-STALL_MAX_S = 2.0  # the wearer gives up a firmware that is silent for longer
-OF_FRAMES_ONLY = ("duplicate", "flip", "spoof")  # not of commands, which go by LCM
+STALL_MAX_S = 2.0  # a firmware that is silent for longer ends the wearer's walk
+OF_FRAMES_ONLY = ("duplicate", "flip", "spoof")  # faults of frames; commands are sent by LCM
 _AGES = dict(zip(MESSAGES, ("COMMAND_AGE", "COM_AGE", "LEFT_AGE", "RIGHT_AGE"), strict=True))
 
 
@@ -38,7 +38,7 @@ class FaultyBus:
 
     def __init__(self, bus: can.BusABC, line: Line, now_s: Callable[[], float]) -> None:
         self._bus, self._line, self._now_s = bus, line, now_s
-        self.sent_s: dict[str, float] = {}  # the last of each message that got through
+        self.sent_s: dict[str, float] = {}  # when each message was last sent
         self.channel_info = bus.channel_info
 
     def send(self, frame: can.Message) -> None:
@@ -56,7 +56,7 @@ class FaultyBus:
 
 
 class FaultyLcm:
-    """LCM that sends commands through a Line. They have neither CRC nor counter there."""
+    """LCM that sends commands through a Line. They have no CRC and no counter."""
 
     def __init__(self, lcm: Any, line: Line, now_s: Callable[[], float]) -> None:
         self._lcm, self._line, self._now_s = lcm, line, now_s
@@ -83,7 +83,7 @@ class FaultyLcm:
 def faulty(
     bus: can.BusABC, lcm: Any, occurrences: Sequence[Occurrence], seed: int
 ) -> tuple[FaultyBus, FaultyLcm]:
-    """Both with all of these faults, from now on."""
+    """Bus and LCM with all of these faults, starting now."""
     begin_s = time.monotonic()
 
     def now_s() -> float:
@@ -121,7 +121,7 @@ class _LiveChecker(Observer):
         self._checker.tick(tick.messages, now_s, now_s)
 
     def _is_misled(self) -> bool:
-        """The commands themselves may be to stand."""
+        """A fault may have changed a command to stand."""
         occurrence = self._happening
         return occurrence.kind in ("noise", "bias") and "COMMAND" in occurrence.messages
 
@@ -132,7 +132,7 @@ class _LiveChecker(Observer):
 
 
 def live_walks(scenario: Scenario, each: int) -> list[tuple[int, int]]:
-    """Which faults by which number: `each` walks of a class, by turns with its strengths."""
+    """(fault index, number): `each` walks of each class, over the range of its strengths."""
     walks = []
     for kind in dict.fromkeys(fault.kind for fault in scenario.faults):
         indices = [
@@ -153,7 +153,7 @@ def _can_happen(kind: str, strength: float) -> bool:
 def live_campaign(
     scenario: Scenario, each: int, seed: int, config: Any, progress: Callable[[int], None]
 ) -> list[Outcome]:
-    """Some at once, each on a bus and an LCM group of its own. progress(walks done)."""
+    """AT_ONCE walks at a time, each on its own bus and LCM group. progress(walks done)."""
     image = core.config_bytes(config)
     tasks = [(scenario, *walk, seed, image) for walk in live_walks(scenario, each)]
     return run_tasks(_work, tasks, Workers(AT_ONCE), progress)
@@ -200,7 +200,7 @@ def run_live(scenario: Scenario, index: int, number: int, seed: int, config: Any
 
 
 def _stalls(host: subprocess.Popen[str], occurrence: Occurrence) -> list[threading.Timer]:
-    """Stops the process and lets it go on, at its times."""
+    """Timers that stop the process and resume it."""
     if occurrence.kind != "stall":
         return []
     begin_s, end_s = occurrence.begin_s, occurrence.begin_s + occurrence.strength

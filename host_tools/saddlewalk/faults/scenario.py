@@ -40,20 +40,20 @@ class Arrival:
     """A frame that reaches the firmware at time_s."""
 
     time_s: float
-    order: int  # of those that arrive at once
+    order: int  # order of simultaneous arrivals
     frame: can.Message = field(compare=False)
     born_s: float = field(compare=False)  # when its content was measured
-    forged: bool = field(default=False, compare=False)  # bits flipped, or of another sender
+    forged: bool = field(default=False, compare=False)  # bits flipped, or from another sender
 
 
-Disturbance = Callable[[Arrival], list[Arrival]]  # the same object where nothing happens
+Disturbance = Callable[[Arrival], list[Arrival]]  # the same object if it is unchanged
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A class of faults; `disturb` None: happens to the firmware, not to frames."""
+    """A class of faults. disturb: None for faults of the firmware, not of frames."""
 
-    strength: str  # what it is, with its unit
+    strength: str  # meaning of the strength, with its unit
     low: float
     high: float
     disturb: Callable[[float, np.random.Generator], Disturbance] | None
@@ -69,7 +69,7 @@ def _loss(share: float, random: np.random.Generator) -> Disturbance:
 
 
 def _burst(length_s: float, random: np.random.Generator) -> Disturbance:
-    """All frames are lost for a while; the first time at once, then at random times."""
+    """All frames are lost for a while: at once, and again at random times."""
     begin_s = -math.inf
 
     def disturb(arrival: Arrival) -> list[Arrival]:
@@ -96,7 +96,7 @@ def _duplicate(copies: float, _: np.random.Generator) -> Disturbance:
 
 
 def _stuck(_: float, __: np.random.Generator) -> Disturbance:
-    """Every frame repeats the first one's values, with a running counter."""
+    """Every frame repeats the values of the first one, with a new counter."""
     first: dict[int, Arrival] = {}
 
     def disturb(arrival: Arrival) -> list[Arrival]:
@@ -111,7 +111,7 @@ def _stuck(_: float, __: np.random.Generator) -> Disturbance:
 
 
 def _added(arrival: Arrival, amount: Callable[[str], float]) -> list[Arrival]:
-    """Something added to each number of a frame; amount(signal) in its unit."""
+    """The frame with amount(signal) added to each number, in its unit."""
     values = wire.signals(arrival.frame)
     names = _NUMBERS[wire.known_name(arrival.frame.arbitration_id)]
     numbers = {name: values[name] + amount(name) for name in names}
@@ -123,7 +123,7 @@ def _noise(deviation: float, random: np.random.Generator) -> Disturbance:
 
 
 def _bias(size: float, random: np.random.Generator) -> Disturbance:
-    """The same for ever, up or down, of each number of each message."""
+    """A constant offset of random sign for each number of each message."""
     signs: dict[tuple[int, str], float] = {}
 
     def disturb(arrival: Arrival) -> list[Arrival]:
@@ -150,8 +150,9 @@ def _flip(bits: float, random: np.random.Generator) -> Disturbance:
 
 
 def _spoof(share: float, random: np.random.Generator) -> Disturbance:
-    """After a share of the frames comes another sender's: its counter is out of step, its CRC is
-    right, and its values differ."""
+    """A share of the frames is followed by one from another sender, with a valid CRC, a counter out
+    of sequence and other values.
+    """
 
     def disturb(arrival: Arrival) -> list[Arrival]:
         if random.random() >= share:
@@ -194,7 +195,7 @@ KINDS = {
     "noise": Kind("standard deviation in m, m/s and rad", 0, 1000, _noise),
     "bias": Kind("added to or taken from each number, m, m/s and rad", 0, 1000, _bias),
     "flip": Kind(f"bits flipped in {FLIPPED_SHARE:.0%} of the frames", 1, FRAME_BITS, _flip),
-    "spoof": Kind("share of the frames that another sender's follows", 0, 1, _spoof),
+    "spoof": Kind("share of the frames that are followed by another sender's", 0, 1, _spoof),
     "nan": Kind("share of the frames with a NaN", 0, 1, _nan),
     "clock": Kind("by which the firmware's clock jumps once, s", -LONGEST_S, LONGEST_S, None),
     "stall": Kind("how long the firmware's process stalls, s", 0, LONGEST_S, None),
@@ -203,18 +204,18 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault at one strength. messages: which frames; empty: one message of its kind, or all."""
+    """A fault at one strength. messages: the affected frames; empty: one of its class's, or all."""
 
     kind: str
     strength: float
     messages: tuple[str, ...]
-    from_s: tuple[float, float]  # it begins somewhere between
+    from_s: tuple[float, float]  # range of its start
     for_s: float
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """Of each run: a walk at a speed somewhere between two, and one of the faults."""
+    """Each run is a walk at a random speed in a range, with one of the faults."""
 
     speed_m_s: tuple[float, float]
     duration_s: float
@@ -237,7 +238,7 @@ class Occurrence:
 
 
 def draw(fault: Fault, random: np.random.Generator) -> Occurrence:
-    """When, and to which messages."""
+    """Draw the time of a fault and the messages that it affects."""
     messages, known = fault.messages, KINDS[fault.kind].messages
     if not messages:
         one = int(random.integers(2 * len(known)))
@@ -272,7 +273,7 @@ class Line:
             heapq.heappush(self._waiting, replace(arrival, order=next(self._sent)))
 
     def due(self, time_s: float) -> list[Arrival]:
-        """What arrives by then, in order of arrival."""
+        """The frames that arrive by time_s, in order."""
         arrivals = []
         while self._waiting and self._waiting[0].time_s <= time_s:
             arrivals.append(heapq.heappop(self._waiting))
@@ -298,7 +299,7 @@ def read_scenario(path: Path) -> Scenario:
 
 
 def _faults(where: str, table: Any) -> list[Fault]:
-    """One for each strength."""
+    """A fault for each strength."""
     keys = {"class", "strength", "messages", "from_s", "for_s"}
     fault = _Table(where, table, keys)
     name = fault.get("class", None)
@@ -334,7 +335,7 @@ class _Table:
         return self._table.get(name, default)
 
     def numbers(self, name: str, low: float, high: float) -> list[float]:
-        """One or more."""
+        """A number or a list of numbers."""
         if name not in self._table:
             raise UserError(f"{self._where}: no {name}: give it in {low:g} to {high:g}")
         value = self._table[name]
@@ -354,7 +355,7 @@ class _Table:
         return numbers[0]
 
     def span(self, name: str, low: float, high: float) -> tuple[float, float]:
-        """Two numbers, or one for both."""
+        """A range: two numbers, or one for both ends."""
         numbers = self.numbers(name, low, high)
         if len(numbers) > 2 or numbers != sorted(numbers):
             raise UserError(f"{self._where}: {name} = {numbers} must be one number, or two rising")
