@@ -1,4 +1,4 @@
-"""Atomic writing: files are replaced when all is written, and stay as they were until then.
+"""Atomic writing: existing files are replaced only when the new ones are complete.
 
 Output goes to a new file or folder in the same place, which is renamed at the end. A command that
 fails or is killed never damages existing files.
@@ -38,7 +38,7 @@ def own_descriptor(path: str | Path) -> int | None:
 
 @contextlib.contextmanager
 def atomic_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO[Any]]:
-    """A file that appears at `path` when all is written; "-": standard output.
+    """A file that appears at `path` when it is complete; "-": standard output.
 
     Special files, and those that are open already, are written to and not replaced. Raises
     UserError, naming the option, if it cannot be written.
@@ -47,7 +47,7 @@ def atomic_file(option: str, path: str | Path, mode: str = "w") -> Iterator[IO[A
         if "b" not in mode:
             yield sys.stdout
             return
-        with os.fdopen(os.dup(STDOUT), mode) as file:  # which a library may close
+        with os.fdopen(os.dup(STDOUT), mode) as file:  # the library may close the file
             yield file
         return
     try:
@@ -65,7 +65,7 @@ def write_text(option: str, path: str | Path, text: str) -> None:
 
 @contextlib.contextmanager
 def atomic_folder(option: str, folder: Path, names: Sequence[str]) -> Iterator[Path]:
-    """A new folder whose files are moved to `folder` when all are written.
+    """A new folder whose files are moved to `folder` when all are complete.
 
     Files of `names` in `folder` that are not written again are of an earlier run and are removed.
     No other file is touched. Raises UserError, naming the option, if it cannot be written.
@@ -125,7 +125,7 @@ class RunFolder:
         os.close(self._lock)
         if kind and self.earlier:
             print(
-                f"{printable(self.folder)} still holds the run before; what was recorded of this "
+                f"{printable(self.folder)} still holds the previous run; what was recorded of this "
                 f"one is in {printable(self._new)}",
                 flush=True,
             )
@@ -135,7 +135,7 @@ class RunFolder:
         except OSError as error:
             words = f"{error.strerror}: the run is in {self._new}"
             raise UserError(f"{self._option} {self.folder}: {words}") from error
-        with contextlib.suppress(OSError):  # it has a file of the user's
+        with contextlib.suppress(OSError):  # it has a file that is not ours
             self._new.rmdir()
 
 
@@ -151,7 +151,7 @@ def _open(path: Path, mode: str) -> Iterator[IO[Any]]:
         with path.open(mode, newline=newline) as file:
             yield file
         return
-    path = path.resolve()  # a link stays one
+    path = path.resolve()  # a symbolic link stays one
     descriptor, partial = tempfile.mkstemp(dir=path.parent, prefix=".new.")
     try:
         with os.fdopen(descriptor, mode, newline=newline) as file:
@@ -165,7 +165,7 @@ def _open(path: Path, mode: str) -> Iterator[IO[Any]]:
 
 
 def _permissions(path: Path) -> int:
-    """Of the existing file, else of a new one."""
+    """Permissions of the existing file, else of a new one."""
     if path.exists():
         return stat.S_IMODE(path.stat().st_mode)
     mask = os.umask(0)
@@ -186,7 +186,7 @@ def _replace(folder: Path, new: Path, names: Sequence[str]) -> None:
         _move_all(moves)
         shutil.rmtree(old)
         for part in {(folder / name).parent for name in names} - {folder}:
-            with contextlib.suppress(OSError):  # it is not there, or holds another file
+            with contextlib.suppress(OSError):  # it is missing, or holds another file
                 part.rmdir()
 
 

@@ -1,7 +1,7 @@
 """Words in letters of three lines."""
 
 GAP = " "
-# Row by row; the letters of the levels' names and of FELL.
+# The letters of the levels' names and of FELL, row by row.
 LETTERS = {
     "A": ("▄▀▄", "█▀█", "▀ ▀"),
     "B": ("█▀▄", "█▀▄", "▀▀ "),

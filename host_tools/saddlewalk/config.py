@@ -67,7 +67,7 @@ def given_fields(args: argparse.Namespace) -> dict[str, float | int]:
 
 
 def configuration(fields: Mapping[str, float | int]) -> Any:
-    """A saddle_config_t: the paper's defaults, but for these fields. Not checked."""
+    """A saddle_config_t with these fields, and the paper's defaults for the others. Not checked."""
     from saddlewalk.core import ffi, library
 
     config = ffi().new("saddle_config_t *")

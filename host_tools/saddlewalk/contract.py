@@ -54,7 +54,7 @@ OUTPUT_FRAMES = int(defined("SADDLE_WIRE_OUTPUT_FRAMES", "wire/include/saddlewal
 
 
 def name_of(number: int, names: tuple[str, ...], kind: str = "") -> str:
-    """An unknown number, of other firmware, is given as `kind number`."""
+    """A name; for a number that is unknown here, as from other firmware, `kind number`."""
     return names[number] if 0 <= number < len(names) else f"{kind} {number}".strip()
 
 

@@ -16,7 +16,7 @@ AGE_NEVER_US = 0xFFFFFFFF  # SADDLE_AGE_NEVER_US
 
 @functools.cache
 def ffi() -> cffi.FFI:
-    """The declarations of the core's public headers, as the build preprocessed them."""
+    """Declarations of the core's public headers, preprocessed by the build."""
     declarations = cffi.FFI()
     declarations.cdef(built("saddlewalk_cdef.h").read_text())
     return declarations

@@ -73,14 +73,16 @@ class Heard:
         return all(message is None for message in messages)
 
     def still_true(self) -> "Heard":
-        """Without the scores of a posture after a fall, and without a margin that is old."""
+        """The state without scores after a fall, and without an old margin."""
         if self.fallen:
             return replace(self, scores=None, verdict=None, balance=None)
         return replace(self, balance=None) if self.silent_s > SILENT_AFTER_S else self
 
 
 def render(heard: Heard) -> RenderableType:
-    """A panel: the level, large, what decided it, and the margin; then all else. 24 lines of 80."""
+    """A panel of 24 lines of 80 characters: the level in large letters, its reason, the margin, the
+    rest.
+    """
     if heard.nothing:
         return Panel(Text(waiting(heard.silent_s)), title="saddlewalk", border_style="yellow")
     level, words = announced(heard)
@@ -102,7 +104,7 @@ def render(heard: Heard) -> RenderableType:
 
 
 def summary(heard: Heard) -> str:
-    """The same on one line of plain text."""
+    """The same as a line of plain text."""
     if heard.silent_s > SILENT_AFTER_S or heard.nothing:
         return waiting(heard.silent_s)
     level, words = announced(heard)
@@ -140,7 +142,7 @@ def margin(balance: Any) -> str:
 
 
 def driver(balance: Any) -> str:
-    """The largest part of the departure from the wearer's own walk: no alarm in itself."""
+    """The largest part of the departure from the wearer's own walk; not an alarm by itself."""
     if balance is None or math.isnan(balance.margin):
         return NOT_AVAILABLE
     return reason_name(balance.driver).replace("_", " ")
@@ -189,7 +191,7 @@ def energy(verdict: Any) -> str:
 
 
 def recovery_step(verdict: Any) -> str:
-    """Where to put which foot, or that no place within reach suffices."""
+    """Which foot to place where, or that no place within reach suffices."""
     if verdict is None or not verdict.compared:
         return NOT_AVAILABLE
     if not verdict.recovery_found:
@@ -241,7 +243,7 @@ def safe_stop(health: Any) -> str:
 
 
 def _numbers(current: Heard) -> list[tuple[str, Any, str]]:
-    """(label, message, field) of what is shown as a bar beside or below the margin."""
+    """(label, message, field) of each bar next to or below the margin."""
     named = [(current.scores, SCORES), (current.scores, MARGINS), (current.verdict, EXPECTED)]
     return [(label, message, name) for message, names in named for label, name in names]
 

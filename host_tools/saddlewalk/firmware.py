@@ -16,7 +16,7 @@ _OF_PROCESS = {identifier(name) for name in ("TIMING", "RECEIVED", "INPUTS")}
 
 @functools.cache
 def ffi() -> cffi.FFI:
-    """The declarations of the firmware's public headers, as the build preprocessed them."""
+    """Declarations of the firmware's public headers, preprocessed by the build."""
     declarations = cffi.FFI()
     declarations.cdef(built("saddlewalk_firmware_cdef.h").read_text())
     return declarations

@@ -16,15 +16,15 @@ def fields() -> dict[str, Any]:
 
 
 def legs(height_m: float, mass_kg: float, measured: Mapping[str, float] | None = None) -> Any:
-    """The saddle_legs_t * of a body, with what was measured of it in the place of the default.
+    """The saddle_legs_t * of a body; measured lengths replace the defaults.
 
-    Raises UserError for a field that there is not and for a value that is not accepted.
+    Raises UserError for an unknown field and for a value that is not accepted.
     """
     result = ffi().new("saddle_legs_t *", library().saddle_legs_default(height_m, mass_kg))
     known = fields()
     for name, value in (measured or {}).items():
         if name not in known:
-            raise UserError(f"{name} is no field of the legs; they have {', '.join(known)}")
+            raise UserError(f"{name} is not a field of the legs; fields are {', '.join(known)}")
         ffi().cast("float *", ffi().cast("char *", result) + known[name].offset)[0] = value
     bad = library().saddle_legs_check(result)
     if bad != ffi().NULL:

@@ -35,7 +35,7 @@ Output = OutputFile | OutputFolder
 
 @dataclass(frozen=True)
 class _Role:
-    """What the value of an option is to its command. output: None for an input."""
+    """The role of an option's value. output: None for an input."""
 
     output: Callable[[argparse.Namespace], Output] | None = None
     default: Callable[[argparse.Namespace], Path] | None = None
@@ -61,15 +61,15 @@ def add_output(
     container: Any,
     *names: str,
     output: Output | Callable[[argparse.Namespace], Output] = OutputFile(),
-    beside: Callable[[argparse.Namespace], Path] | None = None,
+    default_path: Callable[[argparse.Namespace], Path] | None = None,
     **keywords: Any,
 ) -> None:
     """container.add_argument() for what the command writes.
 
-    output and beside, the default, may depend on the other options.
+    output and default_path may depend on the other options.
     """
     of = output if callable(output) else lambda _: output
-    container.add_argument(*names, **keywords).role = _Role(of, beside)
+    container.add_argument(*names, **keywords).role = _Role(of, default_path)
 
 
 def check_files(parser: argparse.ArgumentParser, args: argparse.Namespace) -> None:
@@ -88,7 +88,7 @@ def check_files(parser: argparse.ArgumentParser, args: argparse.Namespace) -> No
             inputs += _inputs(option, getattr(args, action.dest))
         else:
             outputs += _outputs(option, _output_path(action.dest, role, args), role.output(args))
-    _refuse_same(inputs, outputs)
+    _reject_duplicates(inputs, outputs)
 
 
 def _inputs(option: str, value: Any) -> Iterator[_Named]:
@@ -96,12 +96,12 @@ def _inputs(option: str, value: Any) -> Iterator[_Named]:
     paths = value if isinstance(value, list) else [value]
     for path in (str(path) for path in paths if path is not None):
         yield _Named(option, path)
-        if os.path.isdir(path):  # noqa: PTH112 - Path.is_dir() raises where a name is too long
+        if os.path.isdir(path):  # noqa: PTH112 - Path.is_dir() raises for a name that is too long
             yield from (_Named(option, entry.path) for entry in os.scandir(path))
 
 
 def _output_path(dest: str, role: _Role, args: argparse.Namespace) -> str | None:
-    """Its value in `args`, where standard output is "-" by whatever name."""
+    """The option's value in `args`; "-" for standard output by any name."""
     value = getattr(args, dest)
     if value is None and role.default:
         value = role.default(args)
@@ -154,7 +154,7 @@ def _checked_folder(named: _Named, output: OutputFolder) -> list[_Named]:
 
 
 def _try(named: _Named, folder: Path) -> None:
-    """Make a file in the folder: permissions alone do not show that it can be done."""
+    """Create a file in the folder: permissions alone do not show that it is possible."""
     try:
         with tempfile.TemporaryFile(dir=folder):
             pass
@@ -162,7 +162,7 @@ def _try(named: _Named, folder: Path) -> None:
         raise UserError(f"{named}: {error.strerror}: there is no folder {folder}") from error
 
 
-def _refuse_same(inputs: list[_Named], outputs: list[_Named]) -> None:
+def _reject_duplicates(inputs: list[_Named], outputs: list[_Named]) -> None:
     taken = {_identity(file, STDIN): file for file in inputs}
     taken.pop(None, None)
     if all(file.path != "-" for file in outputs):

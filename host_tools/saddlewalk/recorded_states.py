@@ -20,7 +20,7 @@ SCORE_COLUMNS = (
 
 
 def recording_core(config: Any) -> Core:
-    """A core that never stops for lost inputs. config: saddle_config_t, not changed."""
+    """A core that never stops the walk for lost inputs. config: saddle_config_t, not changed."""
     patient = ffi().new("saddle_config_t *", config[0])
     patient.lost_inputs_stop = 0.0
     return Core(patient)
@@ -37,7 +37,7 @@ def scored_rows(
 
 
 def measurement_of(where: str, state: Mapping[str, float]) -> Measurement:
-    """Of the STATE_COLUMNS; what is not finite was not measured.
+    """The measurement in STATE_COLUMNS; a number that is not finite was not measured.
 
     Raises UserError, beginning with `where`, for a contact that is neither 0 nor 1.
     """

@@ -17,12 +17,12 @@ REJECTED = {
     "commands from other machines": "commands_foreign",
 }
 DROPPED = {
-    "frames without room": "frames_no_room",
-    "frames without link": "frames_no_link",
+    "frames that did not fit": "frames_no_room",
+    "frames without a link": "frames_no_link",
     "LCM messages": "messages_not_sent",
 }
-LONG_US = 10_000_000  # an age from here on is given in seconds
-USUAL = 0.99  # the share of ticks whose latency is shown beside the worst
+LONG_US = 10_000_000  # longer ages are given in seconds
+USUAL = 0.99  # share of ticks whose maximum latency is shown with the worst
 
 
 def lines(status: Any) -> list[str]:

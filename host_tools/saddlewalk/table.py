@@ -33,7 +33,7 @@ def write_table(out: str | None, columns: Sequence[str], rows: Iterable[Sequence
 
 def _write_rows(file: IO[Any], columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     rows = iter(rows)
-    first = list(itertools.islice(rows, 1))  # input that is bad from the start gives no header
+    first = list(itertools.islice(rows, 1))  # no header if the first row fails
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(columns)
     writer.writerows([format_cell(cell) for cell in row] for row in itertools.chain(first, rows))
@@ -58,7 +58,7 @@ def _read_rows(
 def read_texts(source: str, *layouts: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
     """Rows of a CSV file, compressed if it ends in .gz, as (line number, column -> text).
 
-    The columns of the first layout that the header has, or else of the one it nearly has. Raises
+    The columns of the first layout that the header matches, or else of the closest one. Raises
     UserError naming the file and the column that is missing or the line that is damaged.
     """
     name = _name(source)

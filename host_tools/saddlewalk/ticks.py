@@ -40,7 +40,7 @@ class FrameBus(Protocol):
 
 
 class TickReader:
-    """Gathers the frames of a tick, of which HEALTH is the last."""
+    """Collects the frames of a tick; HEALTH is the last one."""
 
     def __init__(self) -> None:
         self.receiver = Receiver()
@@ -64,7 +64,7 @@ class TickReader:
 def next_tick(
     bus: FrameBus, feed: Callable[[can.Message], Messages | None], within_s: float
 ) -> Messages | None:
-    """The next tick that `feed` makes of the bus's frames; None if none is complete in time.
+    """The next tick that `feed` assembles from the bus's frames; None if none is complete in time.
 
     Reads at least one waiting frame, and returns in time even if the bus is flooded.
     """

@@ -101,12 +101,12 @@ class Host:
 
 
 def lockstep(*options: str, spec: str | None = None) -> Host:
-    """In which a command holds until the next one."""
+    """Options with which a command holds until the next one."""
     return Host("--lcm=none", "--clock=lockstep", COMMAND_HOLDS, *options, spec=spec)
 
 
 class LcmNode:
-    """Another LCM process's view: what came, by channel."""
+    """A second LCM process: received messages by channel."""
 
     def __init__(self, url: str) -> None:
         self.lcm = open_lcm(url)

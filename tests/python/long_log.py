@@ -1,4 +1,4 @@
-"""Logs made of other logs, byte by byte: long ones, and such as nobody should write."""
+"""Logs made from other logs, byte by byte: long ones and damaged ones."""
 
 import struct
 from collections.abc import Iterable

@@ -56,7 +56,7 @@ def _run(test: Callable[[], None]) -> int:
 
 
 class NotPossibleError(Exception):
-    """This machine lacks what a test needs."""
+    """This machine does not have what a test needs."""
 
 
 def _unshare() -> bool:
@@ -143,7 +143,7 @@ def take_down() -> None:
 
 
 def rename_loopback(name: str) -> None:
-    """While it is down."""
+    """Rename loopback, which must be down."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as control:
         fcntl.ioctl(control, _SIOCSIFNAME, struct.pack("16s16s8x", b"lo", name.encode()))
 
@@ -155,6 +155,6 @@ def unroute() -> None:
 
 
 def route() -> None:
-    """And give it back."""
+    """Restore the multicast route."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as control:
         private_network.route_multicast(control)

@@ -32,7 +32,7 @@ def codec():
 
 
 class Guarded:
-    """The C receiver, with codes demanded, in a session."""
+    """The C receiver in a session that requires authentication."""
 
     def __init__(self, codec, session: int = 0x01020304, key: bytes = KEY) -> None:
         self._codec = codec
@@ -81,7 +81,7 @@ def test_c_and_python_make_the_same_codes(codec):
         assert (values["FRESHNESS"], values["COUNTER"]) == (freshness, command.data[1] & 15)
 
 
-def test_what_is_authenticated_is_accepted_and_nothing_else(codec):
+def test_only_authenticated_commands_are_accepted(codec):
     guarded, sender = Guarded(codec), wire.Sender()
     authenticator = speaking(guarded)
     for number in range(40):
@@ -107,7 +107,7 @@ def test_a_replay_is_rejected_in_its_session_and_in_the_next(codec):
 
 
 def test_every_changed_bit_is_rejected(codec):
-    """Under a right CRC: of the command but for its version, and of the code."""
+    """Every bit of the command (except its version) and of the code, with a valid CRC."""
     for which, bits in ((0, range(12, 64)), (1, [*range(12, 48), *range(56, 64)])):
         for bit in bits:
             guarded, sender = Guarded(codec), wire.Sender()
@@ -118,7 +118,7 @@ def test_every_changed_bit_is_rejected(codec):
             assert guarded.accepts(*frames) == spare, (which, bit)
 
 
-def test_a_code_is_for_one_try(codec):
+def test_a_code_is_valid_once(codec):
     guarded, sender = Guarded(codec), wire.Sender()
     code, command = speaking(guarded).frames(sender, **WALK)
     other = wire.Sender().frame("COMMAND", **(WALK | {"SPEED": 0.5}))
@@ -140,7 +140,7 @@ def key_file(tmp_path):
     return path
 
 
-def test_the_host_applies_who_has_the_key_and_counts_who_has_not(key_file):
+def test_the_host_applies_commands_with_the_key_and_counts_others(key_file):
     with Host("--lcm=none", "--clock=lockstep", "--command-key", str(key_file)) as host:
         assert f"; commands: by CAN, authenticated with the key in {key_file}\n" in host.first_line
         authenticator = Authenticator(KEY)
@@ -157,7 +157,7 @@ def test_the_host_applies_who_has_the_key_and_counts_who_has_not(key_file):
         assert "1 bad code" in host.stop()
 
 
-def test_after_a_silence_there_is_a_new_session_for_whoever_comes(key_file):
+def test_a_silence_opens_a_new_session(key_file):
     with Host("--lcm=none", "--clock=lockstep", "--command-key", str(key_file)) as host:
         sessions, ages = [], []
         heard = None
@@ -183,7 +183,7 @@ def test_after_a_silence_there_is_a_new_session_for_whoever_comes(key_file):
 @pytest.mark.parametrize(
     ("text", "mode"), [(KEY.hex(), 0o644), (KEY.hex()[:-2], 0o600), ("key" * 11, 0o600)]
 )
-def test_a_key_that_is_no_secret_or_no_key_is_one_line(tmp_path, text, mode):
+def test_an_unsafe_or_invalid_key_file_is_a_one_line_error(tmp_path, text, mode):
     path = tmp_path / "key"
     path.write_text(text)
     path.chmod(mode)
@@ -191,7 +191,7 @@ def test_a_key_that_is_no_secret_or_no_key_is_one_line(tmp_path, text, mode):
         host.stop()
 
 
-def test_both_sides_refuse_the_same_key_files(tmp_path, key_file):
+def test_both_sides_reject_the_same_key_files(tmp_path, key_file):
     assert read_key(key_file) == KEY
     for text, mode in ((KEY.hex(), 0o640), (KEY.hex()[:-1], 0o600), ("key" * 11, 0o600)):
         path = tmp_path / "other"
@@ -203,7 +203,7 @@ def test_both_sides_refuse_the_same_key_files(tmp_path, key_file):
         read_key(Path("/no/key"))
 
 
-def test_a_new_key_is_new_and_its_owners_alone(tmp_path):
+def test_a_new_key_is_random_and_readable_by_its_owner_only(tmp_path):
     for name in ("one", "two"):
         write_new_key(tmp_path / name)
         assert (tmp_path / name).stat().st_mode & 0o777 == 0o600

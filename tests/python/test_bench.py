@@ -52,7 +52,7 @@ def tolerance(column: str) -> float:
 
 @functools.cache
 def core_plan(speed: float, angle_deg: float) -> dict[str, np.ndarray]:
-    """What the benchmark has the core plan over a stride, by columns."""
+    """The plan of a stride in the benchmark, by columns."""
     core = CorePlan(speed, math.radians(angle_deg))
     assert core.plan(len(stride(speed))) > 0
     rows = [
@@ -139,7 +139,7 @@ def test_walking_qp_keeps_the_cop_in_the_foot(strides, half_foot_m):
     assert costs == pytest.approx([costs[0]] * len(costs), rel=1e-3)
 
 
-def test_walking_qp_minimises_jerk_and_what_is_off_the_foot_and_the_speed():
+def test_walking_qp_minimises_jerk_cop_error_and_speed_error():
     preview = bench.preview(1)
     for axis in bench.axes(1):
         q, _ = preview.gradient_and_bounds(axis)
@@ -155,7 +155,7 @@ def test_walking_qp_minimises_jerk_and_what_is_off_the_foot_and_the_speed():
         assert jerk @ preview.hessian @ jerk / 2 + q @ jerk == pytest.approx(rise, rel=1e-9)
 
 
-def test_floor_replays_the_calls_that_the_core_makes():
+def test_floor_repeats_the_calls_of_the_core():
     """An argument of erf recorded for each instant gives the heel-strike angle planned there."""
     updates = calls_of_plan()
     count = len(instants(10))
@@ -201,7 +201,7 @@ def test_instructions_of_every_kind_of_tick():
     assert init.least == init.most
 
 
-def test_what_is_not_installed_is_named_in_a_complete_table(monkeypatch, capsys, tmp_path):
+def test_missing_planners_are_named_in_a_complete_table(monkeypatch, capsys, tmp_path):
     for package in ("qpsolvers", "placo"):
         monkeypatch.setitem(sys.modules, package, None)
     monkeypatch.setenv("PATH", str(tmp_path))
@@ -231,7 +231,7 @@ def test_what_is_not_installed_is_named_in_a_complete_table(monkeypatch, capsys,
     assert all(aim["what"] in printed for aim in found["aims"])
 
 
-def test_json_to_standard_output_is_json_alone(monkeypatch, capsys, tmp_path):
+def test_json_on_standard_output_is_nothing_else(monkeypatch, capsys, tmp_path):
     monkeypatch.setitem(sys.modules, "qpsolvers", None)
     monkeypatch.setenv("PATH", str(tmp_path))
     assert main(["bench", "--rounds", "1", "--json", "-"]) == 0
@@ -245,7 +245,7 @@ def test_json_to_standard_output_is_json_alone(monkeypatch, capsys, tmp_path):
         (["--rounds", "1", "--json", "no/such/folder/bench.json"], "no/such/folder/bench.json"),
     ],
 )
-def test_bad_option_is_one_line_that_names_it(options, named, monkeypatch, capsys, tmp_path):
+def test_a_bad_option_is_a_one_line_error(options, named, monkeypatch, capsys, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     try:
         status = main(["bench", *options])

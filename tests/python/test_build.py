@@ -49,7 +49,7 @@ def test_a_missing_product_is_named_with_the_command_that_makes_it(monkeypatch, 
         ("BO_ 256 COMMAND: 8", "BO_ 256 COMMAND: 7", "COMMAND must be a classic frame of 8 bytes"),
     ],
 )
-def test_a_dbc_that_the_wire_cannot_pack_ends_the_build(now, then, message, tmp_path):
+def test_a_dbc_that_the_wire_cannot_pack_fails_the_build(now, then, message, tmp_path):
     text = (paths.CHECKOUT / "firmware/wire/saddlewalk.dbc").read_text()
     changed = tmp_path / "changed.dbc"
     changed.write_text(text.replace(now, then, 1))
@@ -61,8 +61,8 @@ def test_a_dbc_that_the_wire_cannot_pack_ends_the_build(now, then, message, tmp_
     assert not (tmp_path / "wire_signals.h").exists()
 
 
-def test_all_that_pytest_loads_is_built_by_make_build():
-    """What ninja makes only for `tests` would be an old one after `make build`."""
+def test_make_build_builds_everything_that_pytest_loads():
+    """A product of the target `tests` alone would be out of date after `make build`."""
     ninja = Path(sys.executable).with_name("ninja")
     command = [ninja, "-C", paths.build_dir(), "-t", "inputs", "all"]
     result = subprocess.run(command, capture_output=True, text=True, check=True)
@@ -74,8 +74,8 @@ def test_all_that_pytest_loads_is_built_by_make_build():
     assert loaded <= made
 
 
-def test_no_two_files_of_the_firmware_need_each_other():
-    """A .c and its .h are one; what a header of a name needs, any header of that name does."""
+def test_firmware_files_have_no_circular_dependency():
+    """A .c and its .h are one module; headers of the same name count as one."""
     needs: dict[str, set[str]] = {}
     for file in (paths.CHECKOUT / "firmware").rglob("*.[ch]"):
         included = re.findall(r'#include ["<](?:saddlewalk/)?(\w+)\.h[">]', file.read_text())
@@ -89,7 +89,7 @@ def bootstrap(python: str, venv: Path, **environment: str) -> subprocess.Complet
     return subprocess.run(command, env=os.environ | environment, capture_output=True, text=True)
 
 
-def test_what_only_the_system_has_is_asked_for_in_one_line(tmp_path):
+def test_missing_system_packages_are_named_in_one_line(tmp_path):
     result = bootstrap(sys.executable, tmp_path / "venv", CC="no-such-compiler")
     assert result.returncode == 1
     assert result.stderr.count("\n") == 1
@@ -120,14 +120,14 @@ def bare(tmp_path) -> Path:
     return folder
 
 
-def test_glib_is_installed_for_root_who_is_reported_in_one_line(bare, tmp_path):
+def test_root_gets_glib_installed_with_a_one_line_notice(bare, tmp_path):
     result = bootstrap("python", tmp_path / "venv", PATH=f"{bare}:{os.environ['PATH']}")
     assert (result.returncode, result.stderr) == (0, "")
     assert result.stdout.count("\n") == 1 and "installing libglib2.0-0" in result.stdout
     assert (tmp_path / "installed").read_text() == "install -qq -y libglib2.0-0\n"
 
 
-def test_glib_is_asked_for_of_anyone_else_in_one_line(bare, tmp_path):
+def test_other_users_are_asked_for_glib_in_one_line(bare, tmp_path):
     (bare / "id").write_text("#!/bin/sh\necho 1000\n")
     result = bootstrap("python", tmp_path / "venv", PATH=f"{bare}:{os.environ['PATH']}")
     assert (result.returncode, result.stdout, result.stderr.count("\n")) == (1, "", 1)
@@ -135,7 +135,7 @@ def test_glib_is_asked_for_of_anyone_else_in_one_line(bare, tmp_path):
     assert not (tmp_path / "installed").exists()
 
 
-def test_a_missing_cross_compiler_is_named_before_anything_is_configured(tmp_path):
+def test_a_missing_cross_compiler_is_named_before_configuring(tmp_path):
     make = [shutil.which("make"), "-C", paths.CHECKOUT, "controller"]
     environment = {"PATH": str(tmp_path), "HOME": str(tmp_path)}
     result = subprocess.run(make, env=environment, capture_output=True, text=True)
@@ -166,5 +166,5 @@ def test_the_summary_adds_up_and_fails_when_it_should(tmp_path, cases, environme
     assert summary(report, **environment) == expected
 
 
-def test_a_runner_that_left_no_report_is_a_failure(tmp_path):
+def test_a_missing_test_report_is_a_failure(tmp_path):
     assert summary(tmp_path / "missing.xml") == (1, "0 passed, 1 failed")

@@ -36,7 +36,7 @@ def same(received: can.Message, sent: can.Message) -> bool:
 
 
 class TestBus:
-    """What every transport does alike."""
+    """Tests that every transport passes."""
 
     def test_a_frame_reaches_the_others_but_not_its_sender(self, nodes, spec):
         one, other = nodes
@@ -75,24 +75,24 @@ class TestBus:
         ],
         ids=["lowest", "highest", "empty", "extended", "remote"],
     )
-    def test_each_kind_of_frame_comes_as_it_was_sent(self, nodes, sent):
+    def test_each_kind_of_frame_is_received_as_sent(self, nodes, sent):
         one, other = nodes
         one.send(sent)
         assert same(other.recv(WAIT_S), sent)
 
-    def test_a_node_hears_nothing_from_before_it_came(self, nodes, spec):
+    def test_a_node_receives_nothing_sent_before_it_opened(self, nodes, spec):
         one, _ = nodes
         one.send(frame())
         with open_bus(spec) as late:
             assert late.recv(SILENCE_S) is None
 
-    def test_nothing_comes_in_time(self, nodes):
+    def test_recv_times_out(self, nodes):
         start = time.monotonic()
         assert nodes[0].recv(SILENCE_S) is None
         assert nodes[0].recv(0) is None
         assert SILENCE_S <= time.monotonic() - start < WAIT_S
 
-    def test_it_reports_what_it_is(self, nodes, spec):
+    def test_a_bus_describes_itself(self, nodes, spec):
         assert spec.partition(":")[2] in describe(nodes[0])
 
     def test_the_firmware_answers_each_set_of_measurements(self, spec):
@@ -107,7 +107,7 @@ class TestBus:
             assert host.tick_frames(SILENCE_S) == []
             assert "50 ticks, 0 late, 0 missed; frames: 151 accepted, rejected 0 " in host.stop()
 
-    def test_the_firmware_counts_what_does_not_belong(self, spec):
+    def test_the_firmware_counts_foreign_frames(self, spec):
         with lockstep(spec=spec) as host:
             com, *feet = (host.sender.frame(name, **STANDING[name]) for name in STANDING)
             identifier, data = com.arbitration_id, com.data
@@ -131,7 +131,7 @@ class TestBus:
             assert host.tick()["HEALTH"]["REJECTED_FRAMES"] == len(strangers)
             assert f" 0 bad version, 0 bad code, {len(strangers)} malformed;" in host.stop()
 
-    def test_the_tools_count_what_does_not_belong(self, nodes, spec):
+    def test_the_tools_count_foreign_frames(self, nodes, spec):
         one, other = nodes
         receiver = Receiver()
         com = Sender().frame("MEASURED_COM", **STANDING["MEASURED_COM"])
@@ -166,19 +166,19 @@ def lockstep_bytes(spec: str) -> list[tuple[int, bytes]]:
 
 
 class TestUdp:
-    """What only the loopback bus has to be asked."""
+    """Tests of the loopback bus only."""
 
     @pytest.fixture
     def spec(self):
         return private_udp()
 
-    def test_buses_on_other_ports_do_not_hear(self, nodes):
+    def test_buses_on_other_ports_receive_nothing(self, nodes):
         one, _ = nodes
         with open_bus(private_udp()) as apart:
             one.send(frame())
             assert apart.recv(SILENCE_S) is None
 
-    def test_junk_is_counted_and_does_not_hide_what_follows(self, nodes, spec):
+    def test_junk_datagrams_are_counted_and_skipped(self, nodes, spec):
         one, other = nodes
         rng = random.Random(1)
         junk = [b"", b"\x81", b"\xdf\xff\xff\xff\xff", *(rng.randbytes(40) for _ in range(50))]
@@ -199,7 +199,7 @@ class TestUdp:
             assert isinstance(bus, LoopbackUdpBus)
             assert describe(bus) == f"UDP {spec.removeprefix('udp:')} on loopback"
 
-    def test_a_port_that_is_taken_is_one_line(self):
+    def test_a_port_in_use_is_a_one_line_error(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as selfish:
             selfish.bind(("", 0))
             spec = f"udp:{DEFAULT_GROUP}:{selfish.getsockname()[1]}"
@@ -208,7 +208,7 @@ class TestUdp:
                 open_bus(spec)
         assert spec.removeprefix("udp:") in str(error.value)
 
-    def test_loopback_that_is_down_is_one_line(self):
+    def test_loopback_that_is_down_is_a_one_line_error(self):
         unshare = ["unshare", "--user", "--map-root-user", "--net"]
         if subprocess.run([*unshare, "true"], capture_output=True, check=False).returncode != 0:
             pytest.skip("no user namespaces here")
@@ -227,7 +227,7 @@ class TestUdp:
 
 
 def send_datagram(spec, datagram):
-    """As a stranger on the same group would."""
+    """Send a datagram to the group, as any other program could."""
     _, group, port = spec.split(":")
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
         loopback = socket.inet_aton("127.0.0.1")
@@ -257,7 +257,7 @@ def test_a_wrong_spec_is_named(spec):
     assert "\n" not in str(error.value)
 
 
-def test_lcm_that_cannot_be_opened_is_one_line(capfd):
+def test_lcm_that_cannot_be_opened_is_a_one_line_error(capfd):
     with pytest.raises(UserError, match="nowhere:"):
         open_lcm("nowhere:")
     assert capfd.readouterr().err == ""

@@ -1,5 +1,5 @@
 """calibrate and follow: the core's own walks come back as the configuration they were made with;
-laboratories' files, missing markers, nonsense; the TOML and the C header that come out."""
+laboratories' files, missing markers, invalid files; the TOML file and the C header."""
 
 import argparse
 import dataclasses
@@ -67,7 +67,7 @@ def calibrated(tmp_path, *arguments: str) -> dict[str, float]:
     return tomllib.loads(out.read_text())
 
 
-def refusal(capsys, *arguments: str) -> str:
+def error_of(capsys, *arguments: str) -> str:
     assert main(list(arguments)) == 2
     printed = capsys.readouterr()
     assert printed.err.count("\n") == 1
@@ -76,7 +76,7 @@ def refusal(capsys, *arguments: str) -> str:
 
 def test_a_recording_that_is_given_twice_is_rejected(write, capsys, tmp_path):
     walk = write(walk_of(PERSON, 1.0))
-    printed = refusal(capsys, "calibrate", walk, walk, "--out", str(tmp_path / "person.toml"))
+    printed = error_of(capsys, "calibrate", walk, walk, "--out", str(tmp_path / "person.toml"))
     assert walk in printed and "twice" in printed
 
 
@@ -89,7 +89,7 @@ def test_names_of_recordings_are_shown_with_their_control_characters_escaped(wri
     assert r"\x1b[31m\n\x9bred.csv" in (printed.out + printed.err)
 
 
-def test_a_plan_s_own_walks_give_back_its_configuration(write, tmp_path):
+def test_calibrating_to_planned_walks_recovers_the_configuration(write, tmp_path):
     walks = [write(walk_of(PERSON, v), f"{v}.csv") for v in SPEEDS_M_S]
     found = calibrated(tmp_path, *walks, "--mass", "55")
     assert set(found) == {*PERSON, *SHAPE, "learn_ripple_start", "ankle"}
@@ -164,7 +164,7 @@ def test_steps_of_several_cadences_are_pooled(write, tmp_path):
     assert "the slope would be -0.06" in (tmp_path / "person.toml").read_text()
 
 
-def test_ripple_of_the_speed_is_what_the_supervisor_learned(write, tmp_path):
+def test_ripple_is_the_one_that_the_supervisor_learned(write, tmp_path):
     """A walk of even speed, and the same that sways fore and aft by 0.3 m/s."""
     walk = walk_of(PERSON, 1.0)
     com_m = walk.com_m.copy()
@@ -176,7 +176,7 @@ def test_ripple_of_the_speed_is_what_the_supervisor_learned(write, tmp_path):
     assert uneven > 1.5 * even
 
 
-def test_one_speed_fits_the_offsets_and_keeps_the_paper_s_slopes(write, tmp_path):
+def test_one_speed_fits_offsets_and_keeps_the_papers_slopes(write, tmp_path):
     found = calibrated(tmp_path, write(walk_of(PERSON, 1.0)))
     paper = configuration({})
     for name in ("half_step_slope_s", "vertical_slope_s", "step_width_slope_s"):
@@ -194,7 +194,7 @@ def test_one_speed_fits_the_offsets_and_keeps_the_paper_s_slopes(write, tmp_path
     assert shift_m == pytest.approx(found["step_width_fast_m"] - paper.step_width_fast_m, abs=1e-6)
 
 
-def test_offset_width_never_gets_narrower_than_the_core_walks(write, tmp_path):
+def test_fitted_width_is_never_narrower_than_the_core_allows(write, tmp_path):
     fields = {"step_width_slow_m": 0.05, "step_width_slow_speed_m_s": 0.9}
     narrow = {**fields, "step_width_fast_speed_m_s": 0.95}
     found = calibrated(tmp_path, write(walk_of(narrow, 0.6)))
@@ -209,14 +209,14 @@ def test_offset_width_never_gets_narrower_than_the_core_walks(write, tmp_path):
     assert end_m == pytest.approx(0.02, abs=1e-6)
 
 
-def test_intercept_that_would_be_negative_is_zero_and_the_slope_follows(write, tmp_path):
+def test_a_negative_intercept_becomes_zero_and_the_slope_follows(write, tmp_path):
     flat = {"vertical_slope_s": 0.01, "vertical_intercept_m": 0.0}
     found = calibrated(tmp_path, write(walk_of(flat, 1.2)))
     assert found["vertical_intercept_m"] == 0
     assert found["vertical_slope_s"] == pytest.approx(0.01, abs=5e-4)
 
 
-def test_sway_beyond_tangency_is_bounded_by_it(write, tmp_path):
+def test_sway_is_limited_to_tangency(write, tmp_path):
     walk = walk_of({}, 1.2)
     wide = dataclasses.replace(walk, com_m=walk.com_m * (1, 5, 1))
     found = calibrated(tmp_path, write(wide))
@@ -224,13 +224,13 @@ def test_sway_beyond_tangency_is_bounded_by_it(write, tmp_path):
     assert "beyond tangency" in (tmp_path / "person.toml").read_text()
 
 
-def test_height_given_fits_the_pendulum_s_ratio(write, tmp_path):
+def test_with_a_given_height_the_pendulum_ratio_is_fitted(write, tmp_path):
     found = calibrated(tmp_path, write(walk_of(PERSON, 1.0)), "--height", "1.7")
     assert found["body_height_m"] == 1.7
     assert found["pendulum_ratio"] == pytest.approx(0.57 * 1.62 / 1.7, abs=1e-3)
 
 
-def test_sway_is_fitted_beside_drift_and_offset():
+def test_sway_is_fitted_despite_drift_and_offset():
     walk = walk_of({}, 1.0)
     drift_m = 0.3 + 0.02 * walk.time_s
     moved = dataclasses.replace(walk, com_m=walk.com_m + np.outer(drift_m, (0, 1, 0)))
@@ -246,7 +246,9 @@ def test_laboratory_file_is_the_walk_in_the_task_frame(kind, rows, belt_m_s, tmp
     loaded = load_walk(source)
     origin_m = walk.com_m[0] * (1, 1, 0)
     along = walk.com_m[-1, :2] - walk.com_m[0, :2]
-    turned = math.atan2(along[1], along[0]) if not belt_m_s else 0.0  # forward is the way gone
+    turned = (
+        math.atan2(along[1], along[0]) if not belt_m_s else 0.0
+    )  # forward is the direction of walking
     assert abs(turned) < 0.01
     # The belt's speed is known to a few mm/s from feet that roll on it.
     tolerance_m = 0.002 + abs(turned) * 10 + (0.005 * walk.time_s[-1] if belt_m_s else 0)
@@ -268,7 +270,7 @@ def test_laboratory_file_calibrates_as_the_csv_does(kind, write, tmp_path):
 @pytest.mark.parametrize(
     ("kind", "written"), [(kind, gap) for kind in WRITERS for gap in (np.nan, 0.0)]
 )
-def test_marker_that_was_not_seen_is_missing(kind, written, tmp_path):
+def test_an_invisible_marker_is_missing(kind, written, tmp_path):
     markers = laboratory(walk_of(PERSON, 1.0), LABORATORIES["z up, walking along -y"])
     markers["Ann:LHEE"][100:120] = written
     loaded = load_walk(WRITERS[kind](tmp_path / f"walk.{kind}", markers))
@@ -283,7 +285,7 @@ def test_markers_are_named_by_a_mapping_file(tmp_path, capsys):
     source = trc_file(
         tmp_path / "walk.trc", {rename.get(name, name): xyz for name, xyz in markers.items()}
     )
-    assert "no markers for front" in refusal(capsys, "calibrate", source)
+    assert "no markers for front" in error_of(capsys, "calibrate", source)
     mapping = tmp_path / "markers.toml"
     mapping.write_text('front = ["hip a", "Hip B"]\nleft_toe = ["C7"]\n')
     found = calibrated(tmp_path, source, "--markers", str(mapping))
@@ -307,7 +309,7 @@ def test_bad_mapping_is_named(text, named, tmp_path, capsys):
     source = trc_file(tmp_path / "walk.trc", markers)
     mapping = tmp_path / "markers.toml"
     mapping.write_text(text)
-    assert named in refusal(capsys, "calibrate", source, "--markers", str(mapping))
+    assert named in error_of(capsys, "calibrate", source, "--markers", str(mapping))
 
 
 def test_without_toes_the_steps_are_not_reported_and_the_rest_is(tmp_path, capsys):
@@ -335,7 +337,7 @@ def moved(walk: Recording, **offset_m: np.ndarray) -> Recording:
     )
 
 
-def test_what_a_recording_does_not_tell_is_reported_with_the_reason(write, tmp_path, capsys):
+def test_quantities_that_cannot_be_measured_are_reported_with_the_reason(write, tmp_path, capsys):
     walk = walk_of(PERSON, 1.0)
     up = np.array([0, 0, 1.0])
     calibrated(tmp_path, write(moved(walk, com_m=up, heel_m=up, toe_m=up)))
@@ -351,7 +353,7 @@ def test_what_a_recording_does_not_tell_is_reported_with_the_reason(write, tmp_p
     assert "3 each are needed" in printed
 
 
-def test_height_of_the_com_not_seen_leaves_the_transverse_plane(write, tmp_path, capsys):
+def test_without_com_height_the_transverse_plane_is_still_fitted(write, tmp_path, capsys):
     unseen = np.array([0, 0, np.nan])
     found = calibrated(tmp_path, write(moved(walk_of(PERSON, 1.0), com_m=unseen)))
     assert "vertical_slope_s" not in found and "half_step_slope_s" in found
@@ -380,23 +382,23 @@ def scaled(walk: Recording, factor: np.ndarray) -> Recording:
     ],
 )
 def test_values_outside_human_range_are_rejected_by_name(change, named, write, capsys):
-    error = refusal(capsys, "calibrate", write(change(walk_of(PERSON, 1.0))))
+    error = error_of(capsys, "calibrate", write(change(walk_of(PERSON, 1.0))))
     assert any(text in error for text in named.split("|")), error
     assert "walk.csv" in error
 
 
-def test_walks_that_give_no_model_are_rejected_by_the_field(write, tmp_path, capsys):
+def test_walks_without_a_valid_model_name_the_field(write, tmp_path, capsys):
     out = tmp_path / "person.toml"
     slow, fast = ({"vertical_slope_s": 0.001, "vertical_intercept_m": m} for m in (0.09, 0.05))
     walks = [write(walk_of(slow, 1.0), "a.csv"), write(walk_of(fast, 1.25), "b.csv")]
-    error = refusal(capsys, "calibrate", *walks, "--out", str(out))
+    error = error_of(capsys, "calibrate", *walks, "--out", str(out))
     assert "vertical_slope_s = -0.1" in error
     assert not out.exists()
 
 
 def test_height_that_is_not_the_walker_s_is_rejected(write, capsys):
     source = write(walk_of(PERSON, 1.0))
-    assert "0.44 of it; human: 0.45 to 0.65" in refusal(
+    assert "0.44 of it; human: 0.45 to 0.65" in error_of(
         capsys, "calibrate", source, "--height", "2.1"
     )
 
@@ -410,15 +412,15 @@ def test_height_that_is_not_the_walker_s_is_rejected(write, capsys):
         ("walk.c3d", "", "not a C3D file"),
     ],
 )
-def test_file_that_is_none_of_its_kind_is_rejected(name, text, named, tmp_path, capsys):
+def test_a_file_of_another_format_is_rejected(name, text, named, tmp_path, capsys):
     path = tmp_path / name
     path.write_text(text)
-    assert named in refusal(capsys, "calibrate", str(path))
+    assert named in error_of(capsys, "calibrate", str(path))
 
 
 @pytest.mark.parametrize("name", ["walk.trc", "walk.c3d", "walk.csv"])
-def test_file_that_is_not_there_is_named(name, tmp_path, capsys):
-    assert name in refusal(capsys, "calibrate", str(tmp_path / name))
+def test_a_missing_recording_is_named(name, tmp_path, capsys):
+    assert name in error_of(capsys, "calibrate", str(tmp_path / name))
 
 
 @pytest.mark.parametrize(
@@ -437,20 +439,20 @@ def test_bad_trc_is_named(old, new, named, tmp_path, capsys):
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new, 1))
-    assert named in refusal(capsys, "calibrate", str(path))
+    assert named in error_of(capsys, "calibrate", str(path))
 
 
 def test_c3d_without_ezc3d_reports_what_to_install(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    assert "pip install -e '.[c3d]'" in refusal(capsys, "calibrate", str(tmp_path / "a.c3d"))
+    assert "pip install -e '.[c3d]'" in error_of(capsys, "calibrate", str(tmp_path / "a.c3d"))
 
 
-def test_c3d_reader_that_crashes_is_an_error_of_the_file(monkeypatch, tmp_path, capsys):
+def test_a_crash_of_the_c3d_reader_is_an_error_of_the_file(monkeypatch, tmp_path, capsys):
     (tmp_path / "ezc3d.py").write_text("import os\nos.abort()\n")
     monkeypatch.syspath_prepend(tmp_path)
     markers = laboratory(walk_of(PERSON, 1.0, 2.0), LABORATORIES["z up, walking along -y"])
     path = c3d_file(tmp_path / "walk.c3d", markers)
-    assert "walk.c3d: not a C3D file: ezc3d crashed" in refusal(capsys, "calibrate", path)
+    assert "walk.c3d: not a C3D file: ezc3d crashed" in error_of(capsys, "calibrate", path)
 
 
 @pytest.fixture
@@ -462,7 +464,7 @@ def person(write, tmp_path):
     return toml, header
 
 
-def test_toml_loads_wherever_a_configuration_does(person, tmp_path, capsys):
+def test_the_toml_file_loads_as_a_configuration(person, tmp_path, capsys):
     toml = str(person[0])
     capsys.readouterr()
     assert main(["plan", "--speed", "1.0", "--config", toml]) == 0
@@ -512,9 +514,9 @@ def test_header_compiles_with_the_core_and_is_the_same_configuration(person, tmp
     ]
 
 
-def test_no_file_is_left_where_it_cannot_be_written(write, tmp_path, capsys):
+def test_no_partial_file_is_left(write, tmp_path, capsys):
     out = tmp_path / "nowhere/person.toml"
-    error = refusal(capsys, "calibrate", write(walk_of(PERSON, 1.0)), "--out", str(out))
+    error = error_of(capsys, "calibrate", write(walk_of(PERSON, 1.0)), "--out", str(out))
     assert "--out" in error and "No such file or directory" in error
 
 
@@ -528,7 +530,7 @@ def followed(tmp_path, *arguments: str) -> dict[str, dict[str, float]]:
 
 
 @pytest.mark.parametrize("known", ["this walk", "others"])
-def test_calibrated_plan_follows_the_walk_that_it_made(known, write, person, tmp_path, capsys):
+def test_calibrated_plan_tracks_a_planned_walk(known, write, person, tmp_path, capsys):
     before = [] if known == "this walk" else ["--config", str(person[0])]
     rows = followed(tmp_path, write(walk_of(PERSON, 1.1)), *before)
     assert rows["calibrated"]["steps"] == rows["default"]["steps"] >= 12
@@ -576,13 +578,13 @@ def test_film_strip_needs_a_step_that_was_seen(write, tmp_path, capsys):
 
 def test_what_cannot_be_left_out_is_rejected(write, tmp_path, capsys):
     walk = write(walk_of(PERSON, 1.0))
-    assert "two recordings" in refusal(capsys, "follow", walk, "--leave-out")
-    assert "twice" in refusal(capsys, "follow", walk, walk, "--leave-out")
+    assert "two recordings" in error_of(capsys, "follow", walk, "--leave-out")
+    assert "twice" in error_of(capsys, "follow", walk, walk, "--leave-out")
     config = tmp_path / "person.toml"
     config.write_text("body_height_m = 1.7\n")
     other = write(walk_of(PERSON, 1.3), "other.csv")
     arguments = ("--leave-out", "--config", str(config))
-    assert "--config" in refusal(capsys, "follow", walk, other, *arguments)
+    assert "--config" in error_of(capsys, "follow", walk, other, *arguments)
 
 
 def test_follow_reports_a_long_name_on_one_line_where_there_is_no_terminal(tmp_path, capsys):
@@ -625,7 +627,7 @@ def test_walk_with_no_steps_is_rejected():
 
 if TRIALS.is_dir():
 
-    def test_calibration_brings_recorded_people_s_landings_nearer(tmp_path):
+    def test_calibration_reduces_the_landing_error_of_recorded_people(tmp_path):
         trials = sorted(str(path) for path in TRIALS.glob("*__*.csv"))
         out = tmp_path / "follow.csv"
         assert main(["follow", *trials, "--out", str(out)]) == 0

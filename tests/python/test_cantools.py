@@ -47,7 +47,7 @@ def on_a_terminal(command: list[str]) -> Iterator[int]:
 
 
 def until_shown(screen: int, patterns: list[str]) -> str:
-    """What a terminal got until it shows all of the patterns, or after too long."""
+    """The terminal's output until it shows all patterns, or until a timeout."""
     text = ""
     deadline_s = time.monotonic() + START_S
     while (left_s := deadline_s - time.monotonic()) > 0:
@@ -61,15 +61,15 @@ def until_shown(screen: int, patterns: list[str]) -> str:
 def test_cantools_monitor_shows_the_live_firmware(spec):
     command = [program("cantools"), "monitor", "-s", *interface_options(spec), DATABASE]
     with Host("--lcm=none", spec=spec), on_a_terminal(command) as screen:
-        wanted = [
+        expected = [
             r"HEALTH\(CRC: \d+, COUNTER: \d+, STATUS: OK, ",
             r"PLAN_COM\(CRC: \d+, COUNTER: \d+, X: 0\.0 m, Y: 0\.0 m, Z: 1\.0\d+ m\)",
             r"PLAN_EVENTS\(.*MODE: STANDING, ",
             r"VERDICT\(.*LEVEL: UNKNOWN, REASON: INPUT, XCOM_DEVIATION_X: NOT_AVAILABLE",
             r"SCORES_FORCE\(.*FAULTS: \d+",
         ]
-        shown = until_shown(screen, wanted)
-        for pattern in wanted:
+        shown = until_shown(screen, expected)
+        for pattern in expected:
             assert re.search(pattern, shown)
         assert "Discarded: 0, Errors: 0" in shown
 

@@ -19,7 +19,7 @@ def shell(line: str) -> subprocess.CompletedProcess:
     return subprocess.run(words, capture_output=True, text=True, check=False, timeout=60)
 
 
-def test_a_reader_that_leaves_early_is_no_error_to_tell():
+def test_a_closed_pipe_is_not_reported_as_an_error():
     done = shell('"$0" "$@" | head -1')
     assert (done.stdout.count("\n"), done.stderr) == (1, "")
 
@@ -32,13 +32,13 @@ def test_a_reader_that_leaves_early_is_no_error_to_tell():
         (">&-", "standard output is closed"),
     ],
 )
-def test_output_that_cannot_be_written_is_one_line(redirection, named):
+def test_output_that_cannot_be_written_is_a_one_line_error(redirection, named):
     done = shell(f'"$0" "$@" {redirection}')
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert named in done.stderr
 
 
-def test_input_that_is_closed_is_one_line():
+def test_closed_standard_input_is_a_one_line_error():
     done = shell('"$0" supervise --in - <&-')
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert "standard input is closed" in done.stderr

@@ -61,7 +61,7 @@ def test_every_name_has_words(words, names):
     "again",
     ["9[.]80665", '"standing", "st', '"unknown", "st', '"left", "right"', '"COMMAND", "COM_'],
 )
-def test_nothing_of_it_is_written_a_second_time(again):
+def test_names_are_not_duplicated_in_python(again):
     package = paths.CHECKOUT / "host_tools/saddlewalk"
     written = {
         path.name
@@ -136,7 +136,7 @@ def test_every_code_fits_its_signal():
         assert max(table) < 1 << length
 
 
-def test_sources_of_commands_are_those_of_the_status():
+def test_command_sources_match_the_status_type():
     assert list(SOURCES.values()) == [name.upper() for name in status_text.SOURCES]
 
 

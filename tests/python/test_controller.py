@@ -1,4 +1,4 @@
-"""The firmware on an emulated controller, `firmware/port_mcu`, and the line that leads to it."""
+"""The firmware on an emulated controller, `firmware/port_mcu`, and its serial line."""
 
 import contextlib
 import itertools
@@ -25,7 +25,7 @@ from saddlewalk.transport.slcan import SlcanBus, frame_of, text_of
 from saddlewalk.transport.wire import FRAME_LENGTH, Sender, message_name
 
 on_controller = pytest.mark.targets
-START_S = 10.0  # for what must come from a machine that starts
+START_S = 10.0  # timeout for a starting emulator
 WAIT_S = 2.0
 MEASURED_S = 0.01
 EXCEPTION_FRAME = 8 * 4 + 18 * 4 + 4  # core and FPU registers, and the gap that aligns them
@@ -41,8 +41,8 @@ def firmware_frames(folder: Path) -> list[can.Message]:
 
 
 @on_controller
-def test_a_walk_has_the_very_frames_of_the_host_process(tmp_path, capsys):
-    """With another body than the image's own, so that what is fitted to the wearer matters."""
+def test_a_walk_has_the_same_frames_as_the_host_process(tmp_path, capsys):
+    """With another body than the image's default, so that the configuration matters."""
     walk = ["--height", "1.6", "--mass", "50", "--speed", "1.1", "--duration", "8"]
     walk += ["--push", "12@5:90"]
     by_host = demo(tmp_path / "host", "--clock", "lockstep", "--can", private_udp(), *walk)
@@ -107,7 +107,7 @@ def test_in_real_time_its_timer_makes_the_ticks_and_ages_grow():
         80.0,
         160.0,
         240.0,
-    }  # more than one tick's where a busy machine missed some
+    }  # more than one tick's if a busy machine missed some
 
 
 def tool(name: str, *options: str) -> str:
@@ -149,7 +149,7 @@ def test_its_stack_stays_below_the_worst_case_and_it_has_no_heap(monkeypatch):
     assert not {"malloc", "calloc", "realloc", "free", "sbrk", "_sbrk"} & set(names)
 
 
-def test_a_branch_is_no_call_of_what_the_linker_named_after_its_address(monkeypatch):
+def test_a_branch_is_not_taken_for_a_call(monkeypatch):
     monkeypatch.syspath_prepend(Path(__file__).parents[1] / "targets")
     import stack
 
@@ -172,7 +172,7 @@ def test_a_configuration_that_saddle_init_rejects_is_reported():
 
 @on_controller
 @pytest.mark.parametrize("bit", [0, 32 * 4 + 7])  # of the CRC, of the height
-def test_a_settings_page_with_a_flipped_bit_is_not_walked_by(tmp_path, monkeypatch, capsys, bit):
+def test_a_damaged_settings_page_is_rejected(tmp_path, monkeypatch, capsys, bit):
     written = qemu.settings_page
 
     def damaged(config, clock):
@@ -186,7 +186,7 @@ def test_a_settings_page_with_a_flipped_bit_is_not_walked_by(tmp_path, monkeypat
     assert printed.count("\n") == 1 and "settings: the page is damaged" in printed
 
 
-def test_a_controller_that_is_silent_is_reported_without_advice_for_the_host(
+def test_a_silent_controller_is_reported_without_advice_about_the_host(
     tmp_path, monkeypatch, capsys, line
 ):
     @contextlib.contextmanager
@@ -248,7 +248,7 @@ def test_frames_go_over_a_line_as_text(line):
     "text",
     ["", "t", "x1001FF", "t1002FF", "t8000", "t100900112233445566778899", "t1001F", "t1001é"],
 )
-def test_a_line_that_is_no_frame_is_counted(line, text):
+def test_an_invalid_line_is_counted(line, text):
     bus, theirs = line
     assert frame_of(text.encode()) is None
     theirs.sendall(text.encode() + b"\rt1001FF\r")
@@ -256,7 +256,7 @@ def test_a_line_that_is_no_frame_is_counted(line, text):
     assert bus.malformed == 1
 
 
-def test_a_line_whose_other_end_is_gone_is_named(line):
+def test_a_disconnected_line_is_named(line):
     bus, theirs = line
     theirs.close()
     with pytest.raises(UserError, match="a line has ended"):
@@ -265,7 +265,7 @@ def test_a_line_whose_other_end_is_gone_is_named(line):
         bus.send(can.Message(arbitration_id=1, data=bytes(FRAME_LENGTH), is_extended_id=False))
 
 
-def test_a_bus_that_is_closed_leaves_the_line_in_order(line):
+def test_closing_a_bus_closes_the_line_cleanly(line):
     bus, theirs = line
     theirs.sendall(b"t1001FF\r" * 100)
     theirs.shutdown(socket.SHUT_WR)

@@ -1,4 +1,4 @@
-"""What the others taught of a walker: thresholds and probabilities of made-up courses."""
+"""Cross-validation of thresholds and probabilities on synthetic walks."""
 
 import math
 
@@ -43,7 +43,7 @@ def walker(limit: float, count: int = 60) -> list[Score]:
     return walks
 
 
-def test_threshold_is_that_of_the_others():
+def test_the_threshold_is_fitted_to_the_other_walkers():
     found = leave_one_out({"a": walker(0.05), "b": walker(-0.05)})
     assert found["a"].threshold == pytest.approx(-0.05, abs=0.011)
     assert found["b"].threshold == pytest.approx(0.05, abs=0.011)
@@ -51,7 +51,7 @@ def test_threshold_is_that_of_the_others():
     assert found["b"].timely_pct == 100 and found["b"].alarm_though_upright_pct > 40
 
 
-def test_emulated_wearers_teach_each_other_nothing():
+def test_emulated_wearers_are_not_fitted_to_each_other():
     scores = {"emulated_planned": walker(0.0), "emulated_recovery": walker(0.0)}
     assert leave_one_out(scores) == {}
     found = leave_one_out({**scores, "robot": walker(0.08)})
@@ -59,7 +59,7 @@ def test_emulated_wearers_teach_each_other_nothing():
     assert found["robot"].threshold == pytest.approx(0.0, abs=0.011)
 
 
-def test_who_never_fell_or_was_not_pushed_teaches_nothing():
+def test_walkers_without_pushes_or_falls_are_not_fitted():
     upright = [walk([0.2] * 20)]
     assert leave_one_out({"a": walker(0.0), "b": upright}) == {}
 

@@ -51,7 +51,7 @@ def rows(folder: Path) -> list[dict[str, str]]:
     return list(csv.DictReader((folder / "walk.csv").open(newline="")))
 
 
-def test_demo_leaves_a_sound_walk_that_can_be_read_again(tmp_path, ports, capsys):
+def test_demo_records_a_sound_walk_that_reads_back(tmp_path, ports, capsys):
     assert demo(tmp_path, ports) == 0
     shown = capsys.readouterr().out
     assert "did not fall" in shown and "BAD" not in shown and "push of 8 N s to 90 degrees" in shown
@@ -192,7 +192,7 @@ def test_demo_in_real_time(tmp_path, ports):
     assert len(rows(tmp_path)) >= 2 / TICK_S - 2
 
 
-def test_demo_rejects_a_bus_on_which_somebody_walks(tmp_path, ports, capsys):
+def test_demo_rejects_a_bus_with_another_walk(tmp_path, ports, capsys):
     from saddlewalk.emulation.host import running_host
 
     assert demo(tmp_path, ports, "--duration", "1") == 0
@@ -232,7 +232,7 @@ def test_demo_reports_where_it_cannot_write(tmp_path, ports, capsys):
     assert shown.count("\n") == 1 and str(tmp_path / "file" / "demo") in shown
 
 
-def test_what_was_recorded_stays_when_the_firmware_dies(tmp_path, ports, capsys, monkeypatch):
+def test_the_record_is_kept_when_the_firmware_dies(tmp_path, ports, capsys, monkeypatch):
     from saddlewalk.emulation import exoskeleton, host
 
     monkeypatch.setattr(exoskeleton, "SILENCE_S", 0.5)
@@ -299,7 +299,7 @@ def test_emulate_without_firmware_reports_it(ports, capsys, monkeypatch):
         assert shown.count("\n") == 1 and "silent" in shown and "saddlewalk-host" in shown
 
 
-def test_emulate_gives_up_on_firmware_that_does_not_hear_it(ports, capsys, monkeypatch):
+def test_emulate_gives_up_if_the_firmware_does_not_receive(ports, capsys, monkeypatch):
     from saddlewalk.emulation import exoskeleton
     from saddlewalk.emulation.host import running_host
 
@@ -319,7 +319,7 @@ def key_file(tmp_path) -> str:
 
 
 @pytest.mark.parametrize("clock", ["lockstep", "realtime"])
-def test_demo_with_a_new_key_commands_by_authenticated_frames_alone(tmp_path, ports, capsys, clock):
+def test_demo_with_a_new_key_sends_only_authenticated_commands(tmp_path, ports, capsys, clock):
     from saddlewalk.transport.lcm_types import status_t
 
     options = ["--clock", clock, "--command-key", "--duration", "4", "--speed", "1.2"]
@@ -359,7 +359,7 @@ def test_emulate_commands_with_the_key_of_the_firmware(ports, capsys, key_file, 
         assert main([*walk, "--command-key", key_file]) == 0
 
 
-def test_a_controller_demands_no_codes(tmp_path, capsys):
+def test_a_controller_needs_no_authentication(tmp_path, capsys):
     options = ["--firmware", "qemu-m4", "--command-key", "--out", str(tmp_path)]
     assert main(["demo", *options]) == 2
     assert "--command-key: not with --firmware qemu-m4, leave it out" in capsys.readouterr().err
@@ -377,7 +377,7 @@ def test_emulate_ends_with_status_1_after_a_fall(ports, capsys):
 
 
 @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_demo_that_is_ended_keeps_its_logs_and_ends_the_firmware(tmp_path, ports, by):
+def test_an_interrupted_demo_keeps_its_logs_and_stops_the_firmware(tmp_path, ports, by):
     script = Path(sys.executable).with_name("saddlewalk")
     program = [str(script), "demo", "--out", str(tmp_path), *ports]
     heed = functools.partial(signal.signal, by, signal.SIG_DFL)  # nohup's children ignore SIGHUP
@@ -406,8 +406,8 @@ def contents(folder: Path) -> dict[str, bytes]:
     }
 
 
-def test_a_run_takes_the_place_of_the_run_before_once_it_is_complete(tmp_path, ports, capsys):
-    """With all that was made of its log, and of no other file."""
+def test_a_complete_run_replaces_the_previous_one(tmp_path, ports, capsys):
+    """With the files made from its log, and no other file."""
     assert demo(tmp_path, ports, "--duration", "2") == 0
     log = str(tmp_path / "walk.lcmlog")
     for words in (["report", log], *(["export", log, "--format", x] for x in ("csv", "mcap"))):
@@ -452,7 +452,7 @@ def test_two_runs_are_not_recorded_in_one_folder_at_once(tmp_path, ports, capsys
     assert (tmp_path / "walk.csv").read_text() == "theirs"
 
 
-def test_a_walk_that_should_have_stopped_and_has_not_is_not_sound(tmp_path, ports, capsys):
+def test_a_walk_that_did_not_stop_is_not_sound(tmp_path, ports, capsys):
     schedule = tmp_path / "schedule.csv"
     schedule.write_text("t_s,speed_m_s\n0,1.0\n4,0\n")
     options = ["--schedule", str(schedule), "--duration"]

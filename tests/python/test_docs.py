@@ -33,7 +33,7 @@ def test_code_and_page_name_the_same_tags_once(page, library, letter):
 
 @pytest.mark.parametrize(("page", "library", "letter"), LIBRARIES)
 def test_each_equation_s_tag_stands_where_it_is_computed(page, library, letter):
-    """In a source, not only at a declaration or a field."""
+    """Each tag is in a source file, not only in a header."""
     documented = set(tags_in((CHECKOUT / page).read_text(), letter))
     sources = library.rglob("*.c")
     computed = {tag for source in sources for tag in tags_in(source.read_text(), letter)}
@@ -64,7 +64,7 @@ TARGET = re.compile(r"`make ([a-z-]+)")
 FILE = re.compile(r"`((?:firmware|tests|tools|host_tools|examples)/[\w/.-]+)")
 
 
-def test_links_between_pages_and_files_lead_somewhere():
+def test_links_have_a_target():
     links = [page.parent / link for page in PAGES for link in LINK.findall(page.read_text())]
     assert len(links) > 50
     assert [str(link) for link in links if not link.exists()] == []

@@ -1,4 +1,4 @@
-"""Every command line of the README and of docs/ runs as it is printed, or is known not to.
+"""Every command line of the README and of docs/ runs as printed, or is listed as an exception.
 
 Commands stand in blocks of `sh`; a block of `text` right after one is what it prints last. Each
 block runs in a folder like a checkout after `make build`, and in a network of its own.
@@ -88,7 +88,7 @@ LINES = [line for block in BLOCKS for line in block.lines]
 
 @pytest.fixture(scope="module")
 def checkout(tmp_path_factory) -> Path:
-    """What a checkout holds, and what the documents' commands read beside."""
+    """A copy of the checkout, with the files that the documented commands read."""
     folder = tmp_path_factory.mktemp("checkout")
     for path in CHECKOUT.iterdir():
         if path.name not in ("docs", "build", "out", ".git"):
@@ -142,7 +142,7 @@ def commands() -> dict[str, argparse.ArgumentParser]:
 
 
 def known_options(words: list[str]) -> set[str] | None:
-    """Those of a program of ours, from its --help; None of any other."""
+    """The options of one of our programs, from its --help; None for any other program."""
     program, *rest = words
     if program == ".venv/bin/saddlewalk":
         return set(commands()[rest[0]]._option_string_actions)
@@ -169,7 +169,7 @@ def test_a_line_that_is_not_run_names_what_is_there(line):
             assert field in field_ranges()
 
 
-def test_every_reason_is_that_of_a_line():
+def test_every_exclusion_matches_a_line():
     for start in NOT_RUN:
         assert any(line.startswith(start) for line in LINES), start
 

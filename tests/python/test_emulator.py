@@ -67,7 +67,7 @@ def test_the_body_is_that_of_the_configuration():
     assert body.pendulum_m == 0.75
 
 
-def test_com_is_a_pendulum_about_a_fixed_cop():
+def test_the_com_moves_as_a_pendulum_about_a_fixed_cop():
     # A CoP at the toes that is asked to go further forward stays there.
     wearer = Wearer(noise=STEADY)
     wearer.cop_m, wearer.com_m, wearer.velocity_m_s = 0.1 + 0j, 0.11 + 0j, 0.4 + 0j
@@ -97,7 +97,7 @@ def test_pendulum_energy_is_kept_while_the_cop_is_fixed():
     assert energy() == pytest.approx(before, abs=1e-12)
 
 
-def test_same_seed_same_bits_and_another_seed_others():
+def test_a_seed_determines_the_bits():
     def run(seed: int) -> tuple:
         speeds = [(0.0, 1.2), (4.5, 0.0)]
         wearer = walk(Wearer(pushes=(Push(10, 4.0, 90),), seed=seed), speeds, 6.0)
@@ -130,7 +130,7 @@ def test_a_foot_on_the_ground_never_moves(speed_m_s):
 
 
 def distance_outside_support(wearer: Wearer) -> float:
-    """Of the CoP from the hull of the soles on the ground: the middles' segment, widened."""
+    """Distance of the CoP from the hull of the soles on the ground."""
     sole = wearer.body.foot_half_length_m, wearer.body.foot_half_width_m
     middles = [foot.position_m for foot in wearer.feet if foot.contact]
     shares = np.linspace(0, 1, 2001)
@@ -181,14 +181,14 @@ def test_small_pushes_are_survived_and_large_ones_are_not(speed_m_s, push, falls
     ("speed_m_s", "push"),
     [(1.2, Push(30, 5.0, 0)), (1.2, Push(40, 5.0, 180)), (0.8, Push(12, 5.0, 90))],
 )
-def test_the_recovery_step_saves_who_would_fall_on_the_planned_ones(speed_m_s, push):
+def test_the_recovery_step_prevents_falls(speed_m_s, push):
     planned = walk(Wearer(pushes=(push,), takes_recovery_step=False), speed_m_s, 10.0)
     assert planned.fallen
     assert not walk(Wearer(pushes=(push,)), speed_m_s, 10.0).fallen
 
 
 @pytest.mark.parametrize("push", [Push(25, 5.0, 0), Push(10, 5.0, 90)])
-def test_who_keeps_to_the_planned_steps_lands_as_planned_until_the_fall(push):
+def test_without_recovery_steps_landings_are_as_planned_until_the_fall(push):
     wearer = Wearer(noise=STEADY, pushes=(push,), takes_recovery_step=False)
     landings = landings_missed_by(wearer, 1.2, 10.0)
     assert wearer.fallen and landings[-1][0] > 5.5
@@ -196,7 +196,7 @@ def test_who_keeps_to_the_planned_steps_lands_as_planned_until_the_fall(push):
     assert max(miss for _, miss in landings) < 0.005
 
 
-def test_a_recovery_step_goes_to_its_place_and_no_faster_than_the_leg():
+def test_a_recovery_step_reaches_its_place_within_the_legs_speed():
     body, seen = Body(), []
 
     def plan_with(recovery: RecoveryStep | None) -> Plan:
@@ -223,14 +223,14 @@ def test_a_recovery_step_goes_to_its_place_and_no_faster_than_the_leg():
     assert seen[-1] == pytest.approx(0.7 + 0.5j, abs=ARRIVED_M)
 
 
-def test_a_fall_is_for_good_and_low():
+def test_a_fall_is_final_and_ends_low():
     wearer = walk(Wearer(pushes=(Push(80, 3.0, 90),)), 1.2, 6.0)
     assert wearer.fallen and wearer.velocity_m_s == 0
     before = state(wearer)
     nearest = min(abs(wearer.com_m - foot.position_m) for foot in wearer.feet if foot.contact)
     body = wearer.body
     reach = math.sqrt(1 - body.fall_height**2) * body.pendulum_m
-    # Told within the 1 ms in which it happens, at less than 3 m/s.
+    # Detected within 1 ms, at less than 3 m/s.
     assert reach < nearest < reach + 0.003
     walk(wearer, 1.2, 1.0)
     assert wearer.fallen and state(wearer) == before
@@ -335,7 +335,7 @@ def landings_missed_by(
     return missed
 
 
-def test_landings_beside_their_place_do_not_add_up():
+def test_landing_errors_do_not_accumulate():
     """After a push the plan is held against a foot on the ground, and landings are as planned."""
     wearer = Wearer(noise=STEADY, pushes=(Push(12, 6.0, 250),))
     missed = landings_missed_by(wearer, 1.2, 16.0)
@@ -347,7 +347,7 @@ def test_landings_beside_their_place_do_not_add_up():
 # and the XCoM leaves the constant-speed plan by 0.070 m AP and 0.026 m ML at the 95th percentile,
 # by 0.12 and 0.067 m in the largest trial. A CoP under one foot alone would give 0.15 to 0.25 m/s.
 @pytest.mark.parametrize("speed_m_s", [0.5, 0.8, 1.0, 1.2, 1.4, 1.6])
-def test_unperturbed_walk_varies_as_that_of_people(speed_m_s):
+def test_unperturbed_variability_is_that_of_people(speed_m_s):
     wearer = Wearer(seed=1)
     w = wearer.body.natural_frequency_rad_s
     speeds, errors, turns = [], [], []
@@ -377,7 +377,7 @@ def test_unperturbed_walk_varies_as_that_of_people(speed_m_s):
     assert np.abs(error.imag).max() <= 0.067
 
 
-def test_measurements_are_noisy_as_reported():
+def test_measurement_noise_has_its_stated_deviation():
     wearer = Wearer(noise=Noise(position_m=0.002, velocity_m_s=0.02))
     seen = [wearer.measure() for _ in range(2000)]
     heights = np.array([m.height_m for m in seen])
@@ -430,7 +430,7 @@ def test_a_lost_plan_ends_the_walk_and_the_wearer_puts_both_feet_down():
     ],
 )
 @pytest.mark.parametrize("command", ["emulate", "demo"])
-def test_a_bad_option_is_one_line_that_names_it(command, options, named, capsys, tmp_path):
+def test_a_bad_option_is_a_one_line_error(command, options, named, capsys, tmp_path):
     if command == "demo":
         options = [*options, "--out", str(tmp_path)]
     try:

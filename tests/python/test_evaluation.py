@@ -89,7 +89,7 @@ def test_hull_margin_of_two_feet_agrees_with_a_fine_border():
         assert margin == pytest.approx((support - normals @ point).min(), abs=4e-4)
 
 
-def test_hof_margin_counts_the_feet_on_the_ground_alone():
+def test_hof_margin_counts_only_feet_on_the_ground():
     feet = np.array([[[0.0, 0.1], [0.5, -0.1]]] * 3)
     contact = np.array([[True, True], [True, False], [False, False]])
     xcom = np.array([[0.5, -0.1]] * 3)
@@ -115,7 +115,7 @@ def test_a_state_comes_to_rest_exactly_if_its_xcom_is_in_the_soles():
     assert (stops == (depth_m > 0))[sure].all()
 
 
-def test_work_of_a_stop_on_one_foot_is_the_energy_that_it_takes_away():
+def test_work_of_a_stop_on_one_foot_is_the_absorbed_energy():
     body = Body()
     posture = Posture("right foot", ((0.0, 0.1), (0.0, 0.0)), (False, True))
     slow, fast = np.array([[0.0, 0.0, 0.1, 0.0]]), np.array([[0.0, 0.0, 0.25, 0.0]])
@@ -138,7 +138,7 @@ def test_claims_are_those_of_the_core_and_confusion_counts_every_state():
         assert sum(counts.values()) - counts["false_safe_by_work"] == len(states)
 
 
-def test_rates_and_leads_of_made_up_walks():
+def test_rates_and_lead_times_of_synthetic_walks():
     walks = [
         walk_of(0, fell_at_s=8.0, alarm_at_s=7.0),
         walk_of(2, fell_at_s=8.0, alarm_at_s=7.9),
@@ -171,7 +171,7 @@ def test_area_under_the_roc_counts_pairs_and_halves_ties():
     assert math.isnan(detection_of(walks[:2]).areas[WINDOWS[0]]["S_SW"])
 
 
-def test_worth_counts_the_same_pushes_and_limits_the_staircases_turns():
+def test_recovery_benefit_and_push_limits():
     walks = [
         walk_of(0, fell_at_s=8.0), walk_of(0, kind="recovery"),
         walk_of(2), walk_of(2, kind="recovery"),
@@ -187,7 +187,7 @@ def test_worth_counts_the_same_pushes_and_limits_the_staircases_turns():
     assert push_limits(walks)["planned"] == {3: pytest.approx(20.0)}
 
 
-def test_trials_are_drawn_alike_for_both_kinds_and_spread_over_what_is_promised():
+def test_trials_are_equal_for_both_kinds_and_cover_the_stated_ranges():
     trials = [draw(5, index, "planned", MASS_KG) for index in range(400)]
     other = [draw(5, index, "recovery", MASS_KG) for index in range(400)]
     assert [replace(trial, kind="planned") for trial in other] == trials
@@ -199,7 +199,7 @@ def test_trials_are_drawn_alike_for_both_kinds_and_spread_over_what_is_promised(
     assert draw(6, 0, "planned", MASS_KG) != trials[0]
 
 
-def test_a_push_that_fells_is_foreseen_and_checked_by_its_ticks():
+def test_a_fall_is_announced_and_its_record_is_consistent():
     config = default_config()
     trial = replace(draw(1, 0, "planned", MASS_KG), impulse_n_s=60.0, direction_deg=90.0)
     course = run(trial, config)
@@ -266,7 +266,7 @@ def test_the_command_reports_and_writes(tmp_path, capsys):
         (["--height", "17"], "17"),
     ],
 )
-def test_a_bad_option_is_one_line_that_names_it(options, named, capsys):
+def test_a_bad_option_is_a_one_line_error(options, named, capsys):
     try:
         status = main(["evaluate", *options])
     except SystemExit as end:

@@ -1,4 +1,4 @@
-"""`saddlewalk export`: an LCM log as CSV, Parquet and MCAP, with nothing lost or made up."""
+"""`saddlewalk export`: an LCM log as CSV, Parquet and MCAP, with nothing lost or invented."""
 
 import csv
 import json
@@ -120,7 +120,7 @@ def test_mcap_is_what_foxglove_and_plotjuggler_read(walk, tmp_path):
         assert described["valid"] == {"type": "integer"}
 
 
-def test_without_out_it_lies_beside_the_log(walk, tmp_path, capsys):
+def test_the_default_output_is_in_the_logs_folder(walk, tmp_path, capsys):
     log = tmp_path / "a.lcmlog"
     log.write_bytes((walk / "walk.lcmlog").read_bytes())
     for form in ("csv", "parquet", "mcap"):
@@ -150,7 +150,7 @@ def refused(arguments: list[str], capsys) -> str:
     ],
 )
 @pytest.mark.parametrize("command", [["export", "--format", "mcap"], ["report"]])
-def test_what_is_no_log_is_one_line_and_nothing_is_written(
+def test_a_file_that_is_not_a_log_is_a_one_line_error_without_output(
     tmp_path, capsys, command, content, named
 ):
     (tmp_path / "log").write_bytes(content)
@@ -160,7 +160,7 @@ def test_what_is_no_log_is_one_line_and_nothing_is_written(
     assert [path.name for path in tmp_path.iterdir()] == ["log"]
 
 
-def test_a_log_of_others_is_rejected_and_others_in_ours_are_reported(walk, tmp_path, capsys):
+def test_unknown_logs_are_rejected_and_unknown_messages_reported(walk, tmp_path, capsys):
     path = tmp_path / "others.lcmlog"
     log = lcm.EventLog(str(path), "w")
     log.write_event(1, "CAMERA", b"picture")
@@ -173,7 +173,7 @@ def test_a_log_of_others_is_rejected_and_others_in_ours_are_reported(walk, tmp_p
     assert "skipped: 1 messages on CAMERA" in printed.err and "camera" not in printed.out
 
 
-def test_of_a_log_that_was_cut_the_rest_is_exported_and_reported(walk, tmp_path, capsys):
+def test_a_truncated_log_is_exported_as_far_as_possible(walk, tmp_path, capsys):
     cut = tmp_path / "cut.lcmlog"
     cut.write_bytes((walk / "walk.lcmlog").read_bytes()[:100000])
     assert main(["export", str(cut), "--format", "csv"]) == 1
@@ -195,7 +195,7 @@ def test_a_missing_package_is_named_with_what_installs_it(
     assert not list(tmp_path.iterdir())
 
 
-def test_where_it_cannot_be_written_is_one_line(walk, tmp_path, capsys):
+def test_an_unwritable_output_is_a_one_line_error(walk, tmp_path, capsys):
     log = str(walk / "walk.lcmlog")
     (tmp_path / "file").write_text("")
     file, deep = str(tmp_path / "file"), str(tmp_path / "no" / "where.mcap")

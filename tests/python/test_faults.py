@@ -48,7 +48,7 @@ def sent_by(kind: str, strength: float, begin_s: float = 0.0, name: str = "MEASU
     return line, line.due(math.inf)
 
 
-def test_before_it_begins_nothing_happens():
+def test_a_fault_does_nothing_before_it_begins():
     for kind, of in KINDS.items():
         if of.disturb:
             line, arrivals = sent_by(kind, of.high, begin_s=1e9)
@@ -56,12 +56,12 @@ def test_before_it_begins_nothing_happens():
             assert line.onset_s == math.inf
 
 
-def test_loss_takes_its_share():
+def test_loss_drops_its_share_of_frames():
     assert len(sent_by("loss", 1.0)[1]) == 0
     assert len(sent_by("loss", 0.3)[1]) == pytest.approx(0.7 * FRAMES, abs=0.08 * FRAMES)
 
 
-def test_a_burst_takes_all_for_its_time_and_then_nothing_for_a_while():
+def test_a_burst_drops_all_frames_for_its_duration():
     _, arrivals = sent_by("burst", 0.5)
     gaps_s = np.diff([0.0] + [arrival.time_s for arrival in arrivals])
     assert gaps_s[0] == pytest.approx(0.5)
@@ -94,7 +94,7 @@ def accepted(arrivals) -> list[dict[str, float]]:
     return [signals for _, signals in received]
 
 
-def test_a_stuck_sensor_repeats_its_first_values_in_good_frames():
+def test_a_stuck_sensor_repeats_its_first_values_in_valid_frames():
     line, arrivals = sent_by("stuck", 0, begin_s=1.0)
     positions = [signals["X"] for signals in accepted(arrivals)]
     assert positions[:101] == pytest.approx([number / 1000 for number in range(101)])
@@ -103,7 +103,7 @@ def test_a_stuck_sensor_repeats_its_first_values_in_good_frames():
     assert {arrival.born_s for arrival in arrivals[101:]} == {1.0}
 
 
-def test_noise_and_bias_have_their_size():
+def test_noise_and_bias_have_their_stated_size():
     for kind, mean in (("noise", 0.0), ("bias", 0.05)):
         off_m = [
             signals["X"] - number / 1000
@@ -123,7 +123,7 @@ def test_one_or_two_flipped_bits_never_pass_the_crc(bits):
     assert receiver.bad_crc == len(forged)
 
 
-def test_spoofed_frames_have_a_right_crc_and_are_rejected_for_their_counter():
+def test_spoofed_frames_have_a_valid_crc_and_are_rejected_by_counter():
     _, arrivals = sent_by("spoof", 1.0)
     receiver = wire.Receiver()
     taken = {False: 0, True: 0}
@@ -133,12 +133,12 @@ def test_spoofed_frames_have_a_right_crc_and_are_rejected_for_their_counter():
     assert (receiver.bad_crc, receiver.bad_counter) == (0, FRAMES)
 
 
-def test_a_number_that_is_none_is_not_available():
+def test_a_nan_is_sent_as_not_available():
     received = accepted(sent_by("nan", 1.0)[1])
     assert all(math.isnan(signals["X"]) != math.isnan(signals["Y"]) for signals in received)
 
 
-def test_the_example_has_every_class_and_is_read_whole():
+def test_the_example_has_every_class_of_fault():
     scenario = read_scenario(EXAMPLE)
     assert {fault.kind for fault in scenario.faults} == set(KINDS)
     assert len(scenario.faults) * 20 >= 1000
@@ -193,7 +193,7 @@ def test_the_device_reports_the_ages_of_what_it_was_given():
 
 @pytest.fixture(scope="module")
 def steady():
-    """The ticks of a walk to which nothing happens, and its checker's verdict of it."""
+    """The ticks of a walk without a fault, and its checker."""
     return run(scenario_of("none", 0), 0, 0, 1, CONFIG)
 
 
@@ -202,7 +202,7 @@ def scenario_of(kind: str, *strengths: float, messages: tuple[str, ...] = MESSAG
     return replace(read_scenario(EXAMPLE), duration_s=8.0, faults=faults)
 
 
-def test_nothing_is_found_where_nothing_happens(steady):
+def test_no_violation_without_a_fault(steady):
     outcome, history = steady
     assert outcome.violations == () and outcome.detected is None and not outcome.fell
     assert outcome.state in ("walked on", "caution")
@@ -224,13 +224,13 @@ def violations_in(
 
 
 def changed(history, number: int, part: str, **signals: float):
-    """The same ticks but for one."""
+    """The same ticks with one changed."""
     messages = dict(history[number])
     messages[part] = messages[part] | signals
     return [*history[:number], messages, *history[number + 1 :]]
 
 
-def test_the_judge_finds_what_must_not_be(steady):
+def test_the_checker_finds_every_violation(steady):
     history = steady[1]
     assert violations_in(history) == set()
     assert violations_in(changed(history, 60, "PLAN_COM", Z=math.nan)) == {BAD_PLAN}
@@ -244,7 +244,7 @@ def test_the_judge_finds_what_must_not_be(steady):
     assert violations_in(history, usable=False) == {NO_STOP}
 
 
-def test_a_walk_that_never_ends_though_it_is_reported_to_stop_is_found(steady):
+def test_a_reported_stop_that_never_ends_is_a_violation(steady):
     history = steady[1]
     for number in range(20, len(history)):
         history = changed(history, number, "HEALTH", LIMITS=1 << 5)
@@ -252,7 +252,7 @@ def test_a_walk_that_never_ends_though_it_is_reported_to_stop_is_found(steady):
 
 
 @pytest.mark.parametrize("messages", [MESSAGES, *((name,) for name in MESSAGES)])
-def test_whatever_is_lost_stops_the_walk_in_time(messages):
+def test_any_lost_input_stops_the_walk_in_time(messages):
     scenario = scenario_of("loss", 1.0, messages=messages)
     outcome, _ = run(scenario, 0, 0, 1, CONFIG)
     assert outcome.violations == ()
@@ -303,12 +303,12 @@ def test_walks_whose_plan_was_out_of_bounds_once(kind, strength, messages, index
     assert outcome.violations == ()
 
 
-def test_late_data_are_counted_though_the_wire_cannot_tell():
+def test_late_data_are_counted_as_blind_ticks():
     outcome, _ = run(scenario_of("delay", 0.6), 0, 0, 1, CONFIG)
     assert outcome.blind > 10
 
 
-def test_the_campaign_is_the_same_whatever_shares_the_work():
+def test_the_campaign_does_not_depend_on_its_workers():
     scenario = replace(scenario_of("loss", 0.3, 0.9), duration_s=5.0)
     alone = campaign(scenario, 2, 5, CONFIG, Workers(1), lambda _: None)
     seen = []
@@ -335,7 +335,7 @@ def test_the_command_prints_its_table(tmp_path, capsys):
     assert "No such file" in capsys.readouterr().err
 
 
-def test_emulate_has_a_bus_that_fails(tmp_path, capsys):
+def test_emulate_injects_faults_into_its_bus(tmp_path, capsys):
     url, path = own_lcm(), tmp_path / "scenario.toml"
     lost = FAULT.replace("0.5", "1").replace("from_s = 1", "from_s = 2")
     path.write_text(WALK + lost)
@@ -353,7 +353,7 @@ def test_emulate_has_a_bus_that_fails(tmp_path, capsys):
         (FAULT.replace("loss", "stall"), [], "stall happens to the firmware"),
     ],
 )
-def test_what_emulate_cannot_do_is_reported(tmp_path, capsys, fault, options, named):
+def test_faults_that_emulate_cannot_inject_are_rejected(tmp_path, capsys, fault, options, named):
     path = tmp_path / "scenario.toml"
     path.write_text(WALK + fault)
     assert main(["emulate", "--lcm", own_lcm(), "--faults", str(path), *options]) == 2

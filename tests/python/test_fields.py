@@ -118,14 +118,14 @@ MAPPED = {
 DATABASE = cantools.database.load_file(paths.CHECKOUT / "firmware/wire/saddlewalk.dbc")
 # Not on LCM from here: SADDLEWALK_HEALTH has them beside the host's own counts, see test_host.
 ON_HEALTH = {"status", "limits", "faults"}
-# Left out on CAN: 16 bits do not hold them, or they follow from what is there.
+# Not on CAN: they do not fit in 16 bits, or follow from other signals.
 ON_LCM_ALONE = {
     *("plan.stride_count", "plan.origin_x_nm"),
     *("scores.xcom_m.x", "scores.xcom_m.y"),
 }
 # Drawn as a polygon by LCM, and not on CAN.
 POLYGON = "scores.bos."
-# Fields that say whether others hold anything.
+# Fields that say whether others are valid.
 SWITCHES = {"plan.valid", "scores.valid", "verdict.compared", "verdict.margin_known"} | {
     "verdict.recovery.found"
 }
@@ -231,7 +231,7 @@ def expected(path: str) -> set[str]:
     return members | ({signal} - {"-"})
 
 
-def test_every_field_has_a_place_or_is_on_a_list():
+def test_every_field_has_a_place_or_a_listed_reason():
     polygon = {path for path in LEAVES if path.startswith(POLYGON)}
     assert set(LEAVES) == MAPPED.keys() | polygon | {"scores.valid", "verdict.margin_known"}
     assert {path for path, (signal, _) in MAPPED.items() if signal == "-"} == ON_LCM_ALONE
@@ -239,7 +239,7 @@ def test_every_field_has_a_place_or_is_on_a_list():
 
 
 @pytest.mark.parametrize("path", sorted(MAPPED.keys() - SWITCHES))
-def test_a_field_reaches_its_signals_alone(path):
+def test_a_field_reaches_only_its_own_signals(path):
     output = base()
     value = get(output, path)
     if isinstance(value, float):
@@ -276,7 +276,7 @@ def numbers_of(*prefixes: str) -> set[str]:
         ("verdict.recovery.found", numbers_of("verdict.recovery.landing_m")),
     ],
 )
-def test_what_is_not_known_is_not_a_number_on_either_bus(switch, numbers):
+def test_unknown_values_are_nan_on_both_buses(switch, numbers):
     output = base()
     put(output, switch, False)
     found = differences(output)
@@ -294,7 +294,7 @@ def test_a_plan_that_is_not_valid_has_no_numbers_on_can():
     assert all(math.isnan(found[name]) for name in numbers)
 
 
-def test_scores_hang_on_their_bits():
+def test_scores_depend_on_their_valid_bits():
     seen = set()
     for bit in range(library().SADDLE_VALID_ALL.bit_length()):
         output = base()
@@ -321,7 +321,7 @@ def test_the_base_of_support_is_a_polygon_by_lcm():
 
 
 def test_no_signal_is_without_a_field():
-    """Of the messages that tell of the walker."""
+    """Values of the messages about the walker."""
     reached = set().union(*map(expected, MAPPED)) | {"scores.valid"}
     silent = {
         name

@@ -54,7 +54,7 @@ def test_lockstep_answers_each_set_with_one_tick():
         assert host.stop().startswith("60 ticks, 0 late, 0 missed; frames: 181 accepted")
 
 
-def test_frames_of_two_instants_are_no_set():
+def test_frames_of_two_instants_are_not_a_set():
     with lockstep() as host:
         first = {name: host.sender.frame(name, **values) for name, values in STANDING.items()}
         second = {name: host.sender.frame(name, **values) for name, values in STANDING.items()}
@@ -81,7 +81,7 @@ def random_sets(seed: int):
 
 
 def lockstep_bytes(seed: int) -> list[bytes]:
-    """All that the host sends in 100 ticks, without the CRC's frame identifiers."""
+    """All frames that the host sends in 100 ticks."""
     with lockstep() as host:
         sent = []
         host.send("COMMAND", **WALK)
@@ -133,7 +133,7 @@ def test_bad_frames_are_counted_and_not_used():
         )
 
 
-def test_any_datagram_is_survived():
+def test_arbitrary_datagrams_do_no_harm():
     """Random bytes, and true datagrams with random changes."""
     rng = random.Random(5)
     with lockstep() as host, open_bus(host.spec) as listener:
@@ -150,14 +150,14 @@ def test_any_datagram_is_survived():
             host.bus._sending.sendto(junk, host.bus._address)
             sent += 1
             if sent % 50 == 0:
-                host.tick_frames(0.002)  # buffers are finite, the host's and our own
+                host.tick_frames(0.002)  # the host's and our buffers are finite
         host.measure()
         tick = host.tick()
         assert len(tick) == MESSAGES_PER_TICK
         assert tick["HEALTH"]["REJECTED_FRAMES"] > 0.9 * sent
 
 
-def test_an_unusable_command_is_counted_and_the_last_one_holds():
+def test_an_unusable_command_is_counted_and_the_last_one_kept():
     with lockstep() as host:
         host.send("COMMAND", **WALK)
         for rejected, bad in enumerate(({"SPEED": math.nan}, {"MODE": 7}), start=1):
@@ -180,7 +180,7 @@ def test_parameters_reach_the_core():
     ("ankle", "turns", "bends"),
     [("erf", True, False), ("rigid", False, False), ("cycloid", True, True)],
 )
-def test_ankle_models_are_reported_apart(ankle, turns, bends):
+def test_ankle_models_are_distinguished(ankle, turns, bends):
     with lockstep("--ankle", ankle, *QUICK) as host:
         host.send("COMMAND", **WALK)
         pitches, knees = [], []
@@ -220,12 +220,12 @@ def test_realtime_uses_a_measurement_until_it_is_too_old():
 
 @pytest.mark.parametrize("clock", ["realtime", "lockstep"])
 @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM])
-def test_signals_end_it_cleanly(clock, by):
+def test_signals_end_the_host_cleanly(clock, by):
     with Host("--lcm", "none", "--clock", clock) as host:
         assert " ticks, " in host.stop(by)
 
 
-def test_a_flood_stops_neither_the_ticks_nor_the_end():
+def test_a_flood_delays_neither_ticks_nor_shutdown():
     with Host("--lcm", "none") as host:
         until_s = time.monotonic() + 0.5
         while time.monotonic() < until_s:
@@ -234,7 +234,7 @@ def test_a_flood_stops_neither_the_ticks_nor_the_end():
         assert ticks >= 3
 
 
-def test_lcm_reports_what_can_reports():
+def test_lcm_and_can_carry_the_same_values():
     url = own_lcm()
     with Host("--lcm", url, "--clock", "lockstep") as host:
         node = LcmNode(url)
@@ -333,7 +333,7 @@ def assert_same_balance(balance, on_can) -> None:
             assert by_lcm == pytest.approx(by_can, abs=1.01 * half_step, nan_ok=True)
 
 
-def test_the_verdict_by_lcm_has_no_numbers_where_there_are_none():
+def test_unknown_numbers_of_the_lcm_verdict_are_nan():
     url = own_lcm()
     with Host("--lcm", url, "--clock", "lockstep") as host:
         node = LcmNode(url)
@@ -419,7 +419,7 @@ def test_bad_lcm_commands_are_counted_and_not_used():
         (["now"], "now: give options only"),
     ],
 )
-def test_a_wrong_option_is_one_line(options, named):
+def test_a_wrong_option_is_a_one_line_error(options, named):
     command = [paths.built("bin/saddlewalk-host"), *options]
     done = subprocess.run(command, capture_output=True, text=True, timeout=WAIT_S, check=False)
     assert (done.returncode, done.stdout) == (2, "")

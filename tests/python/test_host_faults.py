@@ -1,4 +1,4 @@
-"""The host process when commands, buses, networks and the processor fail it."""
+"""The host process when commands, buses, networks or the processor fail."""
 
 import contextlib
 import ctypes
@@ -56,7 +56,7 @@ def until(node: LcmNode, channel: str, is_so, ticks: int = 60):
     raise AssertionError(f"{channel} never was so in {ticks} ticks")
 
 
-def test_silence_of_the_commands_stops_the_walk_and_is_reported_in_the_same_tick():
+def test_a_command_timeout_stops_the_walk_in_the_reported_tick():
     with Host("--lcm=none", "--clock=lockstep", *QUICK) as host:
         for _ in range(20):
             host.send("COMMAND", **WALK)
@@ -75,7 +75,7 @@ def test_silence_of_the_commands_stops_the_walk_and_is_reported_in_the_same_tick
         assert STOPPING in modes[3:] and modes[-1] == STANDING_MODE
 
 
-def test_the_first_that_commands_is_applied_and_the_other_counted():
+def test_the_first_source_commands_and_the_other_is_counted():
     url = own_lcm()
     with Host("--lcm", url, COMMAND_HOLDS, *QUICK) as host:
         node = LcmNode(url)
@@ -89,7 +89,7 @@ def test_the_first_that_commands_is_applied_and_the_other_counted():
         assert "commands: 1 applied, 0 unusable, 3 ignored, " in host.stop()
 
 
-def test_the_other_may_command_once_the_first_is_silent_and_the_walk_has_ended():
+def test_another_source_may_command_after_the_walk_has_ended():
     """While the walk ends, a new source is ignored: the walk that is stopping stays stopped."""
     url = own_lcm()
     with Host("--lcm", url, *QUICK) as host:
@@ -110,7 +110,7 @@ def test_the_other_may_command_once_the_first_is_silent_and_the_walk_has_ended()
 
 
 @pytest.mark.parametrize("chosen", ["can", "lcm"])
-def test_a_chosen_source_is_the_only_one(chosen):
+def test_only_the_chosen_source_commands(chosen):
     url = own_lcm()
     with Host("--lcm", url, "--command-from", chosen, COMMAND_HOLDS) as host:
         node = LcmNode(url)
@@ -123,7 +123,7 @@ def test_a_chosen_source_is_the_only_one(chosen):
         assert status.commands_obeyed == 1
 
 
-def test_another_wire_version_is_rejected_by_name_and_reported_once():
+def test_another_wire_version_is_rejected_and_reported_once():
     url = own_lcm()
     with Host("--lcm", url) as host:
         node = LcmNode(url)
@@ -137,7 +137,7 @@ def test_another_wire_version_is_rejected_by_name_and_reported_once():
         host.stop(announced=("COMMAND of wire version 3 rejected: this firmware has version ",))
 
 
-def test_what_waited_while_the_process_was_stopped_is_as_old_as_it_is():
+def test_frames_queued_during_a_stall_keep_their_age():
     with Host("--lcm=none") as host:
         host.tick()
         host.process.send_signal(signal.SIGSTOP)
@@ -153,7 +153,7 @@ def test_what_waited_while_the_process_was_stopped_is_as_old_as_it_is():
         assert int(host.stop().split(" late, ")[1].split()[0]) >= 10
 
 
-def test_lcm_commands_that_waited_are_as_old_as_they_are():
+def test_queued_lcm_commands_keep_their_age():
     url = own_lcm()
     with Host("--lcm", url) as host:
         node = LcmNode(url)
@@ -171,7 +171,7 @@ def test_lcm_commands_that_waited_are_as_old_as_they_are():
 
 
 class Flood:
-    """FLOOD_HZ frames a second from a thread: good, repeated, broken, and of others."""
+    """FLOOD_HZ frames a second from a thread: valid, repeated, damaged and foreign ones."""
 
     def __init__(self, host: Host) -> None:
         self._host = host
@@ -291,7 +291,7 @@ def full_pipe() -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("read", [True, False])
-def test_nobody_reads_what_it_reports_and_it_goes_on(read):
+def test_the_host_goes_on_if_nobody_reads_its_output(read):
     """Neither a full pipe nor one without a reader holds up a tick."""
     reading, writing = full_pipe()
     with Host("--lcm=none", stderr=writing) as host:
@@ -338,7 +338,7 @@ def without_rights() -> None:
     resource.setrlimit(resource.RLIMIT_MEMLOCK, (0, 0))
 
 
-def test_rejected_rights_are_reported_and_done_without():
+def test_missing_privileges_are_reported_and_the_host_goes_on():
     command = [paths.built("bin/saddlewalk-host"), "--lcm=none", "--can=udp", "--fifo=20"]
     process = subprocess.Popen(command, stdout=-1, stderr=-1, text=True, preexec_fn=without_rights)
     first_line = process.stdout.readline()
@@ -351,8 +351,8 @@ def test_rejected_rights_are_reported_and_done_without():
 
 
 @in_private_network
-def test_an_interface_that_is_named_is_reported_to_leave_this_machine():
-    """Loopback under another name, for want of another interface."""
+def test_a_named_interface_is_reported_as_leaving_this_machine():
+    """Loopback under another name, in place of another interface."""
     spec = private_udp()
     with Host("--lcm=none", spec=f"{spec}@lo") as host:
         assert f"CAN UDP {spec[4:]}@lo on loopback;" in host.first_line

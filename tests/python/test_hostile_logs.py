@@ -58,7 +58,7 @@ def unseen(monkeypatch) -> None:
 
 
 def run(command: list[str], log: Path, capsys) -> tuple[int, str, str]:
-    """Beside the log; each printed line is safe to show on a terminal."""
+    """Written next to the log; each printed line is safe to show on a terminal."""
     capsys.readouterr()
     status = main([command[0], str(log), *command[1:]])
     printed = capsys.readouterr()
@@ -101,7 +101,7 @@ def test_a_log_is_what_was_written(walk, short):
     assert len(list(ours)) == len(theirs), "a second time"
 
 
-def test_a_log_that_is_cut_anywhere_holds_its_whole_events(tmp_path):
+def test_a_log_cut_anywhere_keeps_its_whole_events(tmp_path):
     data, log = b"".join(map(encoded, SOME)), tmp_path / "log"
     ends = list(itertools.accumulate(len(encoded(event)) for event in SOME))
     for size in range(ends[0], len(data)):
@@ -115,7 +115,7 @@ def test_a_log_that_is_cut_anywhere_holds_its_whole_events(tmp_path):
 
 @pytest.mark.parametrize("block", [lcm_log.BLOCK, 128])
 def test_reading_goes_on_after_damage(tmp_path, monkeypatch, block):
-    """Whatever lies between events, and wherever the blocks end that are read."""
+    """Any bytes between events, at any position relative to the reader's blocks."""
     monkeypatch.setattr(lcm_log, "BLOCK", block)
     log, rng = tmp_path / "log", random.Random(1)
     for size in range(1, 300, 7):
@@ -139,7 +139,7 @@ def test_a_sync_word_within_data_is_data(tmp_path):
     assert (list(log), log.broken) == (events, "")
 
 
-def test_of_an_event_of_megabytes_the_start_is_held(tmp_path, monkeypatch):
+def test_only_the_start_of_a_huge_event_is_kept(tmp_path, monkeypatch):
     monkeypatch.setattr(lcm_log, "DATA_MAX", 1000)
     events = [SOME[0], Event(1, "CAMERA", bytes(5000)), SOME[1]]
     log = LcmLog(write_log(tmp_path / "log", events))
@@ -148,19 +148,19 @@ def test_of_an_event_of_megabytes_the_start_is_held(tmp_path, monkeypatch):
     assert read[1].data == bytes(1000)
 
 
-def test_a_channel_that_is_no_text_is_shown_escaped(tmp_path):
+def test_a_channel_name_that_is_not_text_is_escaped(tmp_path):
     data = HEADER.pack(SYNC, 0, 0, 2, 0) + b"\xff\x80"
     (tmp_path / "log").write_bytes(data)
     assert [event.channel for event in LcmLog(tmp_path / "log")] == [r"\xff\x80"]
 
 
-def test_a_log_is_an_ordinary_file(tmp_path, capsys):
+def test_a_log_must_be_an_ordinary_file(tmp_path, capsys):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", Path(os.devnull)):
         assert "not an ordinary file" in run(["rerun"], path, capsys)[2]
 
 
-def test_monitor_plays_no_damaged_log(short, tmp_path, capsys):
+def test_monitor_rejects_a_damaged_log(short, tmp_path, capsys):
     """lcm's own player reads it, and crashes."""
     data = bytearray(short.read_bytes())
     struct.pack_into(">I", data, 24, 0x7FFFFFFF)
@@ -173,7 +173,7 @@ def test_monitor_plays_no_damaged_log(short, tmp_path, capsys):
 # Text from outside
 
 
-def test_what_a_terminal_would_act_on_is_escaped():
+def test_terminal_control_sequences_are_escaped():
     assert printable(EVIL) == SHOWN
     assert printable("m/s µ ü 步 ok") == "m/s µ ü 步 ok"
     assert printable(os.fsdecode(b"\xff.log")) == r"\udcff.log"
@@ -192,7 +192,7 @@ def with_version(events: list[Event], version: str) -> list[Event]:
     return changed
 
 
-def test_text_of_a_log_does_not_reach_the_terminal_as_it_is(short, tmp_path, capsys, unseen):
+def test_text_of_a_log_is_escaped_on_the_terminal(short, tmp_path, capsys, unseen):
     events = with_version(list(LcmLog(short)), EVIL)
     name = EVIL.replace("\x00", "")
     log = write_log(tmp_path / "log", [*events, Event(1, name, b"data")])
@@ -208,7 +208,7 @@ def test_text_of_a_log_does_not_reach_the_terminal_as_it_is(short, tmp_path, cap
             assert run(command, others, capsys)[0] == 2
 
 
-def test_names_of_files_do_not_reach_the_terminal_as_they_are(short, tmp_path, capsys, unseen):
+def test_file_names_are_escaped_on_the_terminal(short, tmp_path, capsys, unseen):
     log = tmp_path / EVIL.replace("\x00", "").replace("/", "")
     for command in COMMANDS:
         assert "No such file" in run(command, log, capsys)[2]
@@ -219,17 +219,17 @@ def test_names_of_files_do_not_reach_the_terminal_as_they_are(short, tmp_path, c
     assert "\x1b" not in page and "<title>Session report: \\x1b[31mred" in page
 
 
-def test_a_wrong_option_does_not_reach_the_terminal_as_it_is(capsys):
+def test_wrong_options_are_escaped_on_the_terminal(capsys):
     with pytest.raises(SystemExit):
         main(["report", "log", f"--{EVIL}"])
     printed = capsys.readouterr().err
     assert printed.count("\n") == 1 and printed[:-1].isprintable()
 
 
-# Messages that are none
+# Invalid messages
 
 
-def test_fields_of_a_configuration_that_is_forged(short, tmp_path, capsys, unseen):
+def test_fields_of_a_forged_configuration(short, tmp_path, capsys, unseen):
     """Names of other columns, of none, twice, and each time others."""
 
     def forged(number: int) -> Event:
@@ -272,7 +272,7 @@ def test_gaps_of_a_rerun_are_counted_and_the_first_reported(short, tmp_path, cap
     assert printed.count("not compared: tick") <= 20 and " further gaps" in printed
 
 
-def test_ticks_that_lack_channels_are_in_their_places(short):
+def test_ticks_without_some_channels_stay_in_order(short):
     """In each column, against the messages themselves."""
     events = [e for n, e in enumerate(LcmLog(short)) if n % 7 and n % 11]
     (run,) = load_session(write_log(short.with_name("lacking"), events)).runs
@@ -346,7 +346,7 @@ def test_a_mutated_can_log_is_rerun_or_rejected(walk, tmp_path, capsys, suffix):
     assert statuses & {1, 2}
 
 
-# CAN logs as nobody writes them
+# CAN logs that no program writes
 
 
 def blf(*containers: bytes, method: int = 2) -> bytes:

@@ -174,7 +174,7 @@ def test_a_channel_that_is_silent_hides_no_other(missing):
 
 
 def test_all_of_it_fits_a_small_terminal():
-    """24 lines of 80, with every number, a step that ends the walk and a host in trouble."""
+    """24 lines of 80 characters with every number, a last step and a host with problems."""
     message = verdict()
     message.level, message.recovery_stops = verdict_t.LEVEL_UNSTABLE, 1
     lines = drawn(heard(verdict=message), width=80).splitlines()
@@ -232,7 +232,7 @@ def test_a_level_without_a_reason_stands_alone():
 
 
 def test_after_a_fall_no_score_is_shown():
-    """The firmware goes on scoring the posture that it measures, of somebody who lies there."""
+    """The firmware goes on scoring the posture of a wearer who lies on the ground."""
     for text in (drawn(heard(fallen=True)), dashboard.summary(heard(fallen=True))):
         assert "fell" in text.lower() and "scores are not available" in text
         for label in ("S_pend", "S_jump", "S_SW", "CoM in BoS", "XCoM in E-BoS"):
@@ -244,7 +244,7 @@ def test_after_a_fall_no_score_is_shown():
     assert "█" not in drawn(heard(fallen=True)).split("S_pend")[1]
 
 
-def test_the_listener_knows_of_a_fall_while_it_is_reported_of_one():
+def test_the_listener_shows_a_fall_while_it_is_reported():
     from saddlewalk.transport.lcm_types import truth_t
 
     listener, truth = Listener(), truth_t()
@@ -269,7 +269,7 @@ def test_a_level_and_a_reason_of_other_firmware_are_given_by_number():
     assert "level: level 9, reason 99" in drawn(heard(verdict=message))
 
 
-def test_no_recovery_step_is_reported_and_by_how_much():
+def test_a_missing_recovery_step_is_reported_with_the_missing_distance():
     message = verdict()
     message.recovery_found, message.recovery_margin_m = 0, -0.12
     assert dashboard.recovery_step(message) == "none within reach, 0.12 m short"
@@ -286,7 +286,7 @@ def test_a_recovery_step_back_to_the_left_that_ends_the_walk():
     assert text.endswith(", ends the walk")
 
 
-def test_energies_that_are_not_known_are_not_checked():
+def test_unknown_energies_are_not_compared():
     message = verdict()
     message.excess_stop_j = message.excess_track_j = math.nan
     assert dashboard.energy(message) == "to stop n/a, to the plan n/a"
@@ -312,7 +312,7 @@ def test_what_was_rejected_is_reported_by_cause():
     assert "900 frames accepted, 5 bad version, wire" in status_text.inputs(status())
 
 
-def test_who_commanded_before_is_not_reported_to_command_now():
+def test_a_former_command_source_is_not_shown_as_current():
     """Authority ends with the walk that nobody commands any more."""
     message = status()
     message.command_source, message.command_age_us = status_t.SOURCE_NONE, 377_548_000
@@ -327,7 +327,7 @@ def test_commands_from_other_machines_are_reported():
     assert "20 commands from other machines" in status_text.inputs(message)
 
 
-def test_a_process_without_troubles_has_none_reported():
+def test_a_healthy_process_reports_no_problems():
     message = status_t()
     message.can_link = message.lcm_link = status_t.LINK_UP
     message.fifo_priority, message.memory_locked = 20, 1
@@ -367,7 +367,7 @@ def test_standing_is_reported_without_the_numbers_of_a_step():
     assert dashboard.gait(message) == "plan: standing after 17 steps"
 
 
-def test_a_heel_strike_that_is_not_foreseen_has_no_time():
+def test_an_unpredicted_heel_strike_has_no_time():
     message = plan()
     message.mode, message.time_to_heel_strike_s = plan_t.MODE_STARTING, 1000.0
     assert dashboard.gait(message).endswith("no heel strike")
@@ -421,7 +421,7 @@ def test_the_listener_keeps_the_newest_and_counts_what_it_cannot_read():
     assert not listener.complete
 
 
-def test_the_listener_knows_for_how_long_it_heard_nothing():
+def test_the_listener_measures_silence():
     listener = Listener()
     listener.take("SADDLEWALK_PLAN", plan().encode())
     assert "no message" not in listener.line()
@@ -446,7 +446,7 @@ def test_once_prints_one_line_of_a_log(tmp_path):
     assert done.stdout.splitlines() == [dashboard.summary(heard())]
 
 
-def test_once_fails_when_nothing_comes():
+def test_once_fails_without_messages():
     done = subprocess.run([*MONITOR, "--once", "--lcm", SILENT], capture_output=True, text=True)
     assert done.returncode == 1
     assert re.fullmatch(r"no message from the firmware for \d\.\d s\n", done.stdout)

@@ -84,7 +84,7 @@ DAMAGED = {
 
 
 @pytest.mark.parametrize(("damage", "words"), DAMAGED.values(), ids=DAMAGED)
-def test_damaged_c3d_is_rejected_by_what_does_not_fit(damage, words, c3d, tmp_path):
+def test_a_damaged_c3d_file_names_what_does_not_fit(damage, words, c3d, tmp_path):
     path = tmp_path / "walk.c3d"
     path.write_bytes(damage(c3d))
     with pytest.raises(UserError, match=words) as refused:
@@ -115,7 +115,7 @@ print(json.dumps(worst))
 """
 
 
-def test_no_altered_byte_takes_a_c3d_reader_beyond_bounds(c3d, tmp_path):
+def test_no_altered_byte_makes_the_c3d_reader_exceed_its_limits(c3d, tmp_path):
     # 0x80 and 0xff make counts and lengths as large as they can be. Every third byte of header and
     # parameters, where 12 GB and 50 s were taken.
     data_start = BLOCK * (struct.unpack_from("<H", c3d, 16)[0] - 1)
@@ -148,7 +148,7 @@ def test_no_altered_byte_takes_a_c3d_reader_beyond_bounds(c3d, tmp_path):
     assert worst["megabytes"] < 200
 
 
-def test_a_reader_that_takes_too_much_is_stopped(tmp_path, monkeypatch):
+def test_a_reader_that_exceeds_its_limits_is_stopped(tmp_path, monkeypatch):
     (tmp_path / "ezc3d.py").write_text("def c3d(path):\n    bytearray(1 << 30)\n")
     monkeypatch.syspath_prepend(tmp_path)
     path = c3d_file(tmp_path / "walk.c3d", markers())
@@ -171,7 +171,7 @@ def test_unit_may_be_a_word_or_the_beginning_of_one(unit, tmp_path):
     assert "assumed" not in loaded.source
 
 
-def test_unit_that_is_none_is_named(tmp_path):
+def test_an_unknown_unit_is_named(tmp_path):
     with pytest.raises(UserError, match=r"unit 'inch' must be one of m, cm, mm"):
         load_walk(c3d_file(tmp_path / "walk.c3d", markers(), "inch"))
 
@@ -183,7 +183,7 @@ def without_units(path) -> str:
 
 
 @pytest.mark.parametrize("unit", ["m", "cm", "mm"])
-def test_unit_that_is_not_given_is_the_one_in_which_the_walker_is_human(unit, tmp_path):
+def test_a_missing_unit_is_inferred_from_the_walkers_size(unit, tmp_path):
     path = tmp_path / "walk.c3d"
     c3d_file(
         path, {name: xyz * METRE_TEXTS.get(unit, 1e2) / 1e3 for name, xyz in markers().items()}
@@ -193,7 +193,7 @@ def test_unit_that_is_not_given_is_the_one_in_which_the_walker_is_human(unit, tm
     assert loaded.source == f"walk.c3d, no unit in the file, {unit} assumed"
 
 
-def test_unit_that_is_not_given_and_does_not_follow_is_rejected(tmp_path):
+def test_a_missing_unit_that_cannot_be_inferred_is_rejected(tmp_path):
     path = tmp_path / "walk.c3d"
     c3d_file(path, {name: xyz * 7 for name, xyz in markers().items()})
     with pytest.raises(UserError, match="no unit in the file, and none fits: the pelvis is 6"):
@@ -259,7 +259,7 @@ def test_a_pair_of_markers_is_the_point_between_them(pair, tmp_path):
         assert getattr(loaded, points) == pytest.approx(getattr(known, points), abs=1e-6)
 
 
-def test_two_people_in_one_file_are_reported_apart_only_by_the_mapping(tmp_path):
+def test_two_people_in_one_file_need_a_marker_mapping(tmp_path):
     both = markers() | {name.replace("Ann", "Bob"): xyz + 1e3 for name, xyz in markers().items()}
     path = trc_file(tmp_path / "walk.trc", both)
     with pytest.raises(UserError, match="Ann:LASI and Bob:LASI may each be front"):
@@ -277,7 +277,7 @@ def test_two_people_in_one_file_are_reported_apart_only_by_the_mapping(tmp_path)
     assert load_walk(path, mapping).com_m[:, 2] == pytest.approx(alone.com_m[:, 2] + 1.0)
 
 
-def test_a_marker_that_is_named_but_never_seen_leaves_its_place_to_another(tmp_path):
+def test_a_marker_that_is_never_visible_is_replaced_by_another_name(tmp_path):
     found = markers()
     found["Ann:SACR"] = (found["Ann:LPSI"] + found["Ann:RPSI"]) / 2
     known = load_walk(trc_file(tmp_path / "walk.trc", found))
@@ -305,7 +305,7 @@ def test_a_short_gap_is_filled_and_a_long_one_is_not(kind, tmp_path):
     assert np.flatnonzero(np.isnan(loaded.toe_m[1, :, 0])).tolist() == [0, 1, 2]
 
 
-def test_steps_that_a_long_gap_hides_are_left_out_of_the_fit(tmp_path):
+def test_steps_in_a_long_gap_are_left_out_of_the_fit(tmp_path):
     whole = measure(load_walk(c3d_file(tmp_path / "walk.c3d", markers(9.0))))
     holed = markers(9.0)
     holed["Ann:LASI"][500:600] = np.nan  # half a second at 200 Hz

@@ -1,4 +1,4 @@
-"""Every command that writes: no output is an input, each can be written, none is half written."""
+"""Outputs of every command: never an input, checked to be writable, never partly written."""
 
 import argparse
 import importlib
@@ -125,8 +125,8 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.fixture
-def refused(monkeypatch, capsys):
-    """Checks that a command refuses its output in one line, before it does anything."""
+def rejected(monkeypatch, capsys):
+    """Checks that a command rejects its output in one line before it computes."""
 
     def check(writer: Writer, inputs: dict[str, Path], out: Path | str) -> str:
         module = importlib.import_module(f"saddlewalk.commands.{writer.command}")
@@ -147,7 +147,7 @@ def commands() -> dict[str, argparse.ArgumentParser]:
 FILE_WORDS = {"FILE", "FOLDER", "LOG", "OUT", "TRIAL.csv", "RECORDING", "report.html"}
 
 
-def test_every_option_that_names_a_file_reports_whether_it_is_written():
+def test_every_file_option_declares_its_role():
     """Else check_files() would not know it."""
     for name, command in commands().items():
         for action in command._actions:
@@ -175,7 +175,7 @@ def file_of(path: Path) -> Path:
 
 
 def other_names(target: Path, folder: Path, suffix: str) -> list[Path]:
-    """Paths and links to a file; links alone where the suffix would be refused."""
+    """Paths and links to a file; only links if the suffix would be rejected."""
     symbolic, hard = folder / f"symbolic{suffix}", folder / f"hard{suffix}"
     symbolic.symlink_to(target)
     hard.hardlink_to(target)
@@ -186,50 +186,50 @@ def other_names(target: Path, folder: Path, suffix: str) -> list[Path]:
 
 
 @pytest.mark.parametrize("writer", FILES, ids=str)
-def test_an_output_that_is_an_input_is_rejected(writer, mine, tmp_path, refused):
+def test_an_output_that_is_an_input_is_rejected(writer, mine, tmp_path, rejected):
     before = contents(tmp_path / "inputs")
     for name in inputs_of(writer):
         folder = tmp_path / name
         folder.mkdir()
         for out in other_names(file_of(mine[name]), folder, Path(writer.out).suffix):
-            assert "is the same file as" in refused(writer, mine, out)
+            assert "is the same file as" in rejected(writer, mine, out)
     assert contents(tmp_path / "inputs") == before
 
 
 @pytest.mark.parametrize("writer", FOLDERS, ids=str)
-def test_a_folder_that_would_lose_an_input_is_rejected(writer, mine, tmp_path, refused):
+def test_a_folder_that_would_lose_an_input_is_rejected(writer, mine, tmp_path, rejected):
     """The input is what the command would write there; or the folder is that of the input."""
     for name in inputs_of(writer):
         folder = tmp_path / name
         folder.mkdir()
         (folder / writer.holds[0]).hardlink_to(file_of(mine[name]))
-        assert "is the same file as" in refused(writer, mine, folder)
+        assert "is the same file as" in rejected(writer, mine, folder)
     if "{gait}" in writer.words:
-        assert "is the same file as --gait" in refused(writer, mine, mine["gait"])
+        assert "is the same file as --gait" in rejected(writer, mine, mine["gait"])
 
 
 @pytest.mark.parametrize("writer", WRITERS, ids=str)
-def test_an_output_that_cannot_be_written_is_rejected(writer, inputs, tmp_path, refused):
+def test_an_output_that_cannot_be_written_is_rejected(writer, inputs, tmp_path, rejected):
     name = writer.out
     (tmp_path / "file").write_bytes(OLD)
-    refused(writer, inputs, tmp_path / "file" / name)
-    refused(writer, inputs, f"/proc/{name}")
-    refused(writer, inputs, tmp_path / ("x" * 300 + name))
+    rejected(writer, inputs, tmp_path / "file" / name)
+    rejected(writer, inputs, f"/proc/{name}")
+    rejected(writer, inputs, tmp_path / ("x" * 300 + name))
     if writer.holds:
-        refused(writer, inputs, tmp_path / "file")
+        rejected(writer, inputs, tmp_path / "file")
         (tmp_path / "run" / writer.holds[0]).mkdir(parents=True)
-        assert "is a folder" in refused(writer, inputs, tmp_path / "run")
+        assert "is a folder" in rejected(writer, inputs, tmp_path / "run")
     else:
         folder = tmp_path / name
         folder.mkdir()
-        assert "is a folder" in refused(writer, inputs, folder)
-        assert "no folder" in refused(writer, inputs, tmp_path / "nowhere" / name)
+        assert "is a folder" in rejected(writer, inputs, folder)
+        assert "no folder" in rejected(writer, inputs, tmp_path / "nowhere" / name)
     assert (tmp_path / "file").read_bytes() == OLD
 
 
 @pytest.fixture
 def nobody(inputs) -> Iterator[Path]:
-    """A folder of this process, which is not root meanwhile: root may write anywhere."""
+    """A folder of this process, which runs as another user: root may write anywhere."""
     parser()  # imports every command
     was = os.geteuid()
     with tempfile.TemporaryDirectory() as folder:  # pytest's own is in one of its user alone
@@ -241,16 +241,16 @@ def nobody(inputs) -> Iterator[Path]:
 
 
 @pytest.mark.parametrize("writer", WRITERS, ids=str)
-def test_an_output_that_is_write_protected_is_rejected(writer, inputs, nobody, refused):
+def test_an_output_that_is_write_protected_is_rejected(writer, inputs, nobody, rejected):
     out = nobody / "folder" / writer.out
     file = out / writer.holds[0] if writer.holds else out
     file.parent.mkdir(parents=True)
     file.write_bytes(OLD)
     file.chmod(0o444)
-    assert "write-protected" in refused(writer, inputs, out)
+    assert "write-protected" in rejected(writer, inputs, out)
     file.chmod(0o644)
     file.parent.chmod(0o555)
-    assert "Permission denied" in refused(writer, inputs, out)
+    assert "Permission denied" in rejected(writer, inputs, out)
     file.parent.chmod(0o755)
     assert file.read_bytes() == OLD
 
@@ -337,7 +337,7 @@ def test_a_stream_from_or_to_a_file_is_that_file(line, mine, tmp_path):
         ('"$0" export inputs/walk.lcmlog --format mcap --out - >file', "\x89MCAP"),
     ],
 )
-def test_what_is_open_already_is_written_to_and_not_replaced(line, start, mine, tmp_path):
+def test_open_files_are_written_to_and_not_replaced(line, start, mine, tmp_path):
     file = tmp_path / "file"
     file.write_text("old\n")
     number = file.stat().st_ino
@@ -356,7 +356,7 @@ def test_a_file_that_is_replaced_keeps_its_permissions(tmp_path):
 
 
 @pytest.mark.parametrize("suffix", ["docx", "", "csv"])
-def test_a_picture_of_no_known_format_is_rejected_before_the_plan(inputs, capsys, suffix):
+def test_an_unknown_picture_format_is_rejected_before_planning(inputs, capsys, suffix):
     words = ["plan", "--schedule", str(inputs["schedule"]), "--picture", f"x.{suffix}"]
     assert main(words) == 2
     printed = capsys.readouterr()

@@ -52,7 +52,7 @@ def places(bus: Ticking, wake_ups: int, stalled: tuple[int, float] = (0, 0.0)) -
     return taken
 
 
-def test_each_tick_is_for_a_wake_up_of_its_own():
+def test_each_tick_has_its_own_wake_up():
     assert places(Ticking(), 41) == {ARRIVALS + n: 8 * n for n in range(1, 6)}
 
 
@@ -61,7 +61,7 @@ def test_after_a_stall_ticks_wait_for_their_time():
     assert places(Ticking(), 57, (12, 0.2)) == {ARRIVALS + n: 8 * n for n in range(1, 8)}
 
 
-def test_a_lost_tick_moves_no_other():
+def test_a_lost_tick_does_not_shift_others():
     expected = {ARRIVALS + n: 8 * n for n in range(1, 6)}
     del expected[6]
     assert places(Ticking(lost=(6,)), 41) == expected
@@ -122,7 +122,7 @@ def test_stalls_are_kept_with_their_time_and_the_longest_before_a_fall_is_found(
     )
 
 
-def test_a_fall_after_a_stall_of_the_computer_is_reported_to_be_one(tmp_path):
+def test_a_fall_after_a_stall_mentions_the_stall(tmp_path):
     program = [sys.executable, "-c", "from saddlewalk.cli import main; raise SystemExit(main())"]
     walk = ["demo", "--speed", "1.2", "--duration", "4.5", "--push", "80@3:90"]
     ports = ["--can", private_udp(), "--lcm", own_lcm(), "--out", str(tmp_path)]

@@ -1,4 +1,6 @@
-"""Others' builds take the library up, each by its own manifest, and refuse to break its bits."""
+"""The library builds in other build systems, by their manifests, and rejects flags that change
+bits.
+"""
 
 import json
 import os
@@ -82,7 +84,7 @@ def walk(tmp_path_factory) -> str:
 
 
 @pytest.mark.parametrize("library", ["core", "joints"])
-def test_one_file_exports_its_interface_alone(library):
+def test_the_one_file_core_exports_only_its_interface(library):
     archive = paths.built(f"lib/libsaddlewalk_{library}.a")
     listing = run(cached("CMAKE_NM"), "-g", "--defined-only", archive)
     exported = {line.split()[2] for line in listing.stdout.splitlines() if " T " in line}
@@ -143,7 +145,7 @@ def test_find_package_rejects_another_version(installed, tmp_path):
     assert f"version: {VERSION}" in result.stderr
 
 
-def test_what_is_installed_names_nothing_of_the_checkout(installed):
+def test_installed_files_do_not_name_the_checkout(installed):
     for file in installed.rglob("*.cmake"):
         assert str(CHECKOUT) not in file.read_text(), file
 
@@ -195,18 +197,18 @@ def test_arduino_properties_are_complete(tmp_path):
     run(CHECKOUT / "tools/package.py", "arduino", tmp_path / "Saddlewalk")
     lines = (tmp_path / "Saddlewalk/library.properties").read_text().splitlines()
     fields = dict(line.split("=", 1) for line in lines)
-    wanted = "name version author maintainer sentence paragraph category architectures includes"
-    assert all(fields[name] for name in wanted.split())
+    expected = "name version author maintainer sentence paragraph category architectures includes"
+    assert all(fields[name] for name in expected.split())
     assert re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9 _.-]*", fields["name"])
     assert fields["version"] == VERSION
     assert fields["category"] in ("Device Control", "Data Processing", "Sensors", "Other")
     assert (tmp_path / "Saddlewalk/src" / fields["includes"]).is_file()
-    refused = run(CHECKOUT / "tools/package.py", "arduino", tmp_path, check=False)
-    assert refused.returncode == 1
-    assert refused.stderr == f"{tmp_path} exists already: name a new folder\n"
+    rejected = run(CHECKOUT / "tools/package.py", "arduino", tmp_path, check=False)
+    assert rejected.returncode == 1
+    assert rejected.stderr == f"{tmp_path} exists already: name a new folder\n"
 
 
-def test_platformio_manifest_is_in_step_and_builds(walk, tmp_path):
+def test_platformio_manifest_is_current_and_builds(walk, tmp_path):
     committed = (CHECKOUT / "library.json").read_text()
     manifest = json.loads(committed)
     old = tmp_path / "library.json"
@@ -234,7 +236,7 @@ def test_zephyr_module_builds_under_stand_ins_for_its_functions(walk, tmp_path):
 
 
 @pytest.mark.parametrize("has_fpu", ["y", "n"])
-def test_zephyr_option_is_off_until_asked_for_and_then_wants_the_fpu(has_fpu, tmp_path):
+def test_zephyr_option_is_off_by_default_and_selects_the_fpu(has_fpu, tmp_path):
     module = yaml.safe_load((CHECKOUT / "zephyr/module.yml").read_text())
     tree = tmp_path / "Kconfig"
     options = f"config CPU_HAS_FPU\n\tdef_bool {has_fpu}\n\nconfig FPU\n\tbool\n\n"

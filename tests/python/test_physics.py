@@ -72,7 +72,7 @@ def test_a_body_stands_upright_with_its_weight_on_both_soles(body):
 
 
 @needs_mujoco
-def test_the_com_accelerates_as_the_quadratic_programme_was_asked():
+def test_the_com_accelerates_as_the_quadratic_programme_asks():
     """The momentum of the floating base is that of the whole body."""
     from saddlewalk.physics.inverse_dynamics import Contact, FootTarget, Targets
 

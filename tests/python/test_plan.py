@@ -93,7 +93,7 @@ def test_plan_equals_the_double_precision_twin(speed, angle, capsys):
 
 
 @pytest.mark.parametrize(("speed", "planner_m", "rigid_m"), PEAK_TO_PEAK_M)
-def test_vertical_excursion_is_the_paper_s(speed, planner_m, rigid_m, capsys):
+def test_vertical_excursion_is_the_papers(speed, planner_m, rigid_m, capsys):
     step_time = Twin(speed, 0).step_time
     for ankle, expected_m in (("erf", planner_m), ("rigid", rigid_m)):
         twin = Twin(speed, math.radians(10), ankle)
@@ -108,19 +108,19 @@ def test_vertical_excursion_is_the_paper_s(speed, planner_m, rigid_m, capsys):
 @pytest.mark.parametrize(
     ("speed", "minimum"), [(0.7, 0.545), (1.0, 0.682), (1.2, 0.735), (1.6, 0.801)]
 )
-def test_lateral_stability_minimum_is_the_paper_s(speed, minimum, capsys):
+def test_lateral_stability_minimum_is_the_papers(speed, minimum, capsys):
     rows = plan(capsys, "--speed", str(speed), "--dt", "0.002")
     assert min(float(row["s_sw"]) for row in rows) == pytest.approx(minimum, abs=5e-4)
 
 
 @pytest.mark.parametrize(("speed", "share"), [(0.3, 0.76), (0.5, 0.55), (0.7, 0.41), (1.0, 0.0)])
-def test_xcom_runs_ahead_of_the_base_as_the_model_reports(speed, share, capsys):
+def test_xcom_leaves_the_base_as_the_model_predicts(speed, share, capsys):
     rows = plan(capsys, "--speed", str(speed), "--dt", "0.002")
     inside = [float(row["mos_xcom_m"]) > 0 for row in rows]
     assert np.mean(inside) == pytest.approx(share, abs=0.01)
 
 
-def test_rows_do_not_depend_on_the_tick_between_them(capsys):
+def test_rows_do_not_depend_on_the_ticks_in_between(capsys):
     coarse = plan(capsys, "--speed", "1.2", "--strides", "3", "--dt", "0.4")
     fine = plan(capsys, "--speed", "1.2", "--strides", "3", "--dt", "0.02")
     for k, row in enumerate(coarse):
@@ -128,7 +128,7 @@ def test_rows_do_not_depend_on_the_tick_between_them(capsys):
             assert float(row[column]) == pytest.approx(float(fine[20 * k][column]), abs=TOLERANCE)
 
 
-def test_columns_are_those_of_the_contract_and_numbers_are_lossless(capsys):
+def test_columns_are_as_documented_and_numbers_are_lossless(capsys):
     rows = plan(capsys, "--speed", "1.2")
     assert ",".join(rows[0]) == (
         "t_s,phase,theta_rad,support,com_x_m,com_y_m,com_z_m,com_vx_m_s,com_vy_m_s,com_vz_m_s,"
@@ -187,7 +187,7 @@ def test_old_name_of_a_field_is_read_with_a_warning(tmp_path, capsys):
         ([], "--speed"),
     ],
 )
-def test_bad_option_is_one_line_that_names_it(options, named, capsys):
+def test_a_bad_option_is_a_one_line_error(options, named, capsys):
     try:
         status = main(["plan", *options])
     except SystemExit as exit_:

@@ -94,7 +94,7 @@ def first_alarm_s(walk: dict[str, str], rows: list[dict[str, str]]) -> float:
     return min((t for t in times if float(walk["push_time_s"]) <= t < fall_s), default=math.nan)
 
 
-def test_rates_are_those_of_what_supervise_reports(folder, announced):
+def test_rates_follow_from_the_output_of_supervise(folder, announced):
     found = evaluate(folder)["twin"]
     pushed = [walk for walk in table(folder / "walks.csv") if walk["push_time_s"]]
     alarms = {walk["run"]: first_alarm_s(walk, announced[walk["run"]]) for walk in pushed}
@@ -111,7 +111,7 @@ def test_rates_are_those_of_what_supervise_reports(folder, announced):
     assert found["alarms_though_upright"] == sum(upright)
 
 
-def test_steady_levels_are_those_of_what_supervise_reports(folder, announced):
+def test_steady_levels_follow_from_the_output_of_supervise(folder, announced):
     found = evaluate(folder)["twin"]
     for run, begin_s in ((RUNS[0], 1.0 + 2.0), (RUNS[1], 1.0)):
         rows = announced[run.name]
@@ -125,7 +125,7 @@ def test_steady_levels_are_those_of_what_supervise_reports(folder, announced):
 
 @pytest.mark.parametrize(("window", "longest_s"), WINDOWS.items())
 @pytest.mark.parametrize("column", ["mos_com_m", "s_sw"])
-def test_areas_count_the_pairs_of_a_fall_and_none(window, longest_s, column, folder, announced):
+def test_areas_count_pairs_of_a_fall_and_no_fall(window, longest_s, column, folder, announced):
     least: dict[str, list[float]] = {"0": [], "1": []}
     for walk in table(folder / "walks.csv"):
         if walk["push_time_s"]:
@@ -161,7 +161,7 @@ def test_figures_are_those_of_the_recipe(recorded, folder, tmp_path):
         assert found[path] == (value if exact else pytest.approx(value, rel=1e-12)), path
 
 
-def test_noise_and_a_tick_of_latency_stand_beside_the_exact_figures(folder):
+def test_figures_with_noise_and_latency_are_given_too(folder):
     one, again = evaluate(folder, "--jobs", "1"), evaluate(folder, "--jobs", "2")
     assert one == again
     other = evaluate(folder, "--seed", "2")
@@ -176,7 +176,7 @@ def test_noise_and_a_tick_of_latency_stand_beside_the_exact_figures(folder):
     assert exact == other["twin"]
 
 
-def test_walkers_have_their_own_body_unless_the_configuration_reports_otherwise(folder, tmp_path):
+def test_walkers_have_their_own_body_unless_configured(folder, tmp_path):
     (tmp_path / "other.toml").write_text("body_height_m = 1.5\nlevel_hold_ticks = 1\n")
     own = evaluate(folder)["twin"]
     assert own["config"] == {"body_mass_kg": "63.30", "body_height_m": "1.7900"}
@@ -215,7 +215,7 @@ def test_the_command_reports_and_draws(folder, tmp_path, capsys):
     assert not (out / "walks.csv").exists()
 
 
-def test_emulated_wearers_stand_beside_recorded_walkers(folder, tmp_path):
+def test_emulated_and_recorded_walkers_are_in_one_table(folder, tmp_path):
     found = evaluate(folder, "--walks", "4", "--out", str(tmp_path))
     assert list(found) == ["emulated_planned", "emulated_recovery", "twin"]
     assert found["emulated_planned"].keys() <= found["twin"].keys()
@@ -269,12 +269,12 @@ def test_evidence_begins_at_the_push_and_ends_before_the_fall(tick, soon, later)
     assert found["roc_to_0.24_s_before"]["mos_com"] == later
 
 
-def test_evidence_of_who_stays_up_ends_after_three_seconds():
+def test_evidence_without_a_fall_ends_after_three_seconds():
     assert score(walk(), announcement(least={87: -1.0})).least["roc_to_0.24_s_before"]["s_sw"] == -1
     assert score(walk(), announcement(least={88: -1.0})).least["roc_to_0.24_s_before"]["s_sw"] == 1
 
 
-def test_a_missing_margin_is_no_evidence():
+def test_a_missing_margin_is_not_evidence():
     unknown = announcement()
     unknown.margins["s_sw"] = np.full(TICKS, math.nan)
     scores = [score(walk(fall_s=6.0), unknown), score(walk(), announcement())]
@@ -283,7 +283,7 @@ def test_a_missing_margin_is_no_evidence():
     assert figures(scores, {})[EARLY]["mos_com"] == 0.5
 
 
-def test_a_tick_late_everything_is_reported_a_tick_later():
+def test_a_tick_of_latency_delays_everything_by_a_tick():
     late = one_tick_late(announcement([50], {50: -1.0}))
     assert np.flatnonzero(late.level == UNSTABLE).tolist() == [51]
     assert LEVELS[late.level[0]] == "unknown" and reason_name(late.reason[0]) == "input"
@@ -291,7 +291,7 @@ def test_a_tick_late_everything_is_reported_a_tick_later():
     assert math.isnan(late.margins["mos_com"][0])
 
 
-def test_a_stumble_is_an_xcom_that_leaves_the_feet_or_a_wide_step():
+def test_a_stumble_is_an_xcom_outside_the_feet_or_a_wide_step():
     plain = score(walk(), announcement([60])).stumble
     assert plain == replace(plain, xcom_out=False, further_out=False, wide_step=False)
     out, wide = walk(), walk()
@@ -355,7 +355,7 @@ def fate_of(walk) -> tuple[float, float]:
     return walk.fell_at_s, walk.alarm_at_s
 
 
-def test_exact_sensors_see_the_state_itself():
+def test_exact_sensors_measure_the_state_itself():
     config, schedule = configuration({}), schedule_of([(0.0, 0.0), (1.0, 1.0)], 0.1)
     wearer = Wearer(Body.of(config), EXACT_SENSORS)
     ticks = itertools.islice(closed_loop.walk(config, wearer, schedule), 40)
@@ -393,9 +393,7 @@ def damaged():
 
 
 @pytest.mark.parametrize(("file", "damage", "named"), list(damaged()))
-def test_a_damaged_folder_is_one_line_that_names_what_is_wrong(
-    file, damage, named, folder, tmp_path, capsys
-):
+def test_a_damaged_folder_is_a_one_line_error(file, damage, named, folder, tmp_path, capsys):
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
     path = copy / file
     opened = gzip.open if path.suffix == ".gz" else io.open

@@ -177,7 +177,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("old", "new", "words"), BAD, ids=[words for *_, words in BAD])
-def test_a_bad_trial_is_one_line_that_reports_where(trial, capsys, old, new, words):
+def test_a_bad_trial_is_a_one_line_error_with_its_place(trial, capsys, old, new, words):
     assert main(["replay", trial(old, new)]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
@@ -207,7 +207,7 @@ needs_gaitkit = pytest.mark.skipif(
 
 @needs_gaitkit
 @pytest.mark.parametrize("name", SAMPLES)
-def test_a_sample_walks_forward_upright_with_its_left_to_the_left(name):
+def test_samples_are_in_the_task_frame(name):
     recording = load_sample(name)
     assert "CC-BY 4.0" in recording.source
     assert "CoM taken midway between the hips" in recording.source
@@ -230,7 +230,7 @@ def test_the_samples_are_a_healthy_and_a_slower_walk():
     assert healthy.step_length_m > stroke.step_length_m
 
 
-def test_a_landmark_of_zeros_was_not_seen(monkeypatch, tmp_path):
+def test_a_landmark_of_zeros_is_missing(monkeypatch, tmp_path):
     import json
 
     from saddlewalk.gait import samples
@@ -280,7 +280,7 @@ if TRIALS.is_dir():
     @pytest.mark.parametrize(
         "row", list(csv.DictReader((TRIALS / "manifest.csv").open())), ids=lambda row: row["file"]
     )
-    def test_recorded_trials_measure_as_their_manifest_reports(row):
+    def test_recorded_trials_match_their_manifest(row):
         gait = analyse(load_recording(str(TRIALS / row["file"])))
         assert gait.speed_m_s == pytest.approx(float(row["speed_m_s"]), rel=0.03)
         assert gait.step_length_m == pytest.approx(float(row["step_length_m"]), rel=0.05)

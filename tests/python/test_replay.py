@@ -111,7 +111,7 @@ class OfflineFirmware:
         stop = core.SADDLE_VALID_STOP
         return {
             **NO_PLAN_NOR_LEARNED_WALK,
-            **judgement(output.verdict),
+            **verdict_signals(output.verdict),
             "SCORES_ENERGY": {
                 "CAN_STOP": scores.can_stop,
                 "ON_TRACK": output.verdict.on_track,
@@ -141,7 +141,7 @@ class OfflineFirmware:
         }
 
 
-def judgement(verdict) -> Messages:
+def verdict_signals(verdict) -> Messages:
     """What needs a walk to compare with."""
     recovery, deviation_m = verdict.recovery, verdict.xcom_deviation_m
 
@@ -193,7 +193,7 @@ def parsed(text: str) -> dict[str, str]:
     return {line.split()[0]: line.split()[1] for line in text.splitlines()}
 
 
-def test_a_set_is_what_the_recording_holds_at_that_time():
+def test_a_set_holds_the_recordings_state_at_its_time():
     walk = Walk(duration_s=1.0)
     recording = walk.recording()
     contact = walk.contact()
@@ -262,14 +262,14 @@ def test_in_real_time_the_answers_are_those_of_lockstep():
     assert same(live, list(play_lockstep(OfflineFirmware(), iter(sets))))
 
 
-def test_a_tick_with_a_lost_frame_is_no_tick(monkeypatch):
+def test_a_tick_with_a_lost_frame_is_discarded(monkeypatch):
     monkeypatch.setattr(playback, "ANSWER_TIMEOUT_S", 0.05)
     bus = OfflineFirmware(lose=frozenset({"SCORES_MARGIN"}))
     with pytest.raises(UserError, match=r"did not answer the measurements at 0\.00 s"):
         list(play_lockstep(bus, iter(sets_of(Walk(duration_s=0.5)))))
 
 
-def test_a_walk_is_checked_as_it_was_walked():
+def test_a_replayed_walk_is_scored_as_it_was_walked():
     walk = Walk(speed_m_s=1.2, step_length_m=0.65, duration_s=6)
     ticks = list(play_lockstep(OfflineFirmware(), iter(sets_of(walk))))
     speeds = [scores["V_COMP"] for _, scores in ticks if not math.isnan(scores["V_COMP"])]
@@ -328,7 +328,7 @@ def test_a_replay_gives_the_same_bits_each_time(capsys, tmp_path):
     assert written[0] == written[1]
 
 
-def test_what_no_human_walks_is_reported(capsys, tmp_path):
+def test_implausible_walks_are_reported(capsys, tmp_path):
     walk = Walk(speed_m_s=1200.0, step_length_m=650.0)
     path = tmp_path / "millimetres.csv"
     path.write_text(csv_text(walk.recording()))

@@ -1,4 +1,4 @@
-"""`saddlewalk report`: the page's numbers are the log's, and what the log lacks is reported."""
+"""`saddlewalk report`: the page's numbers are the log's, and missing data are reported."""
 
 import html.parser
 import math
@@ -136,14 +136,14 @@ def page(walk, tmp_path_factory) -> Page:
     return report(walk / "walk.lcmlog", tmp_path_factory.mktemp("report") / "report.html")
 
 
-def test_the_page_is_whole_in_itself(page):
+def test_the_page_is_self_contained(page):
     assert page.tags["img"] == 3 and "No faults or limits were reported." in page.text
     assert page.addresses and all(a.startswith("data:image/png;base64,") for a in page.addresses)
     assert not page.tags.keys() & {"script", "link", "iframe", "object"}
     assert "Saddlewalk is not a medical device." in page.text
 
 
-def test_levels_have_the_time_that_the_log_gives_them(walk, page):
+def test_time_in_levels_matches_the_log(walk, page):
     levels = Counter(LEVELS[message.level] for message in messages(events_of(walk), "VERDICT"))
     rows = page.tables["level", "time (s)", "share"]
     assert [row[0] for row in rows] == ["stable", "caution", "unstable", "unknown"]
@@ -224,7 +224,7 @@ def test_gait_without_steps_or_with_an_absurd_configuration_is_reported(walk, tm
     assert GAIT not in page.tables
 
 
-def test_variability_is_the_samples():
+def test_variability_is_that_of_the_sample():
     spread = variability([1.0, 2.0, math.nan, 3.0])
     assert (spread.steps, spread.mean, spread.sd, spread.cv) == (3, 2.0, 1.0, 0.5)
     assert math.isnan(variability([1.0]).sd) and math.isnan(variability([]).mean)
@@ -288,7 +288,7 @@ def test_a_fall_has_its_time_on_the_page_and_in_the_pictures(walk, tmp_path, uns
     assert list(axes.lines[0].get_xdata()) == [run.fell_s, run.fell_s]
 
 
-def test_the_worst_alarms_of_a_long_run_are_shown_closely(walk, tmp_path, monkeypatch):
+def test_the_worst_alarms_of_a_long_run_are_shown_in_detail(walk, tmp_path, monkeypatch):
     def alarm(tick, verdict):
         starts = {20: 2, 40: 3, 60: 2, 61: 2, 80: 2, 81: 2, 82: 2}
         verdict.level, verdict.reason = starts.get(tick, 1), 0
@@ -320,7 +320,7 @@ def test_faults_late_ticks_and_rejected_frames_are_reported(walk, tmp_path):
     assert page.tags["img"] == 4 and "When each fault and limit was reported." in page.text
 
 
-def test_ages_are_the_inputs(walk, tmp_path, unseen):
+def test_ages_are_those_of_the_inputs(walk, tmp_path, unseen):
     def age(tick, message):
         message.left_age_us = -1 if tick < 3 else 1000 * (tick - 3)
 
@@ -351,7 +351,7 @@ def utime_us(event: Event) -> int:
     return decode(event).utime_us
 
 
-def test_without_verdicts_it_reports_it(walk, tmp_path, unseen):
+def test_a_log_without_verdicts_says_so(walk, tmp_path, unseen):
     log = write_events(tmp_path / "log", without(events_of(walk), "VERDICT"))
     page = report(log, tmp_path / "a.html")
     assert "No verdict was logged." in page.text and ALARMS not in page.tables
@@ -359,7 +359,7 @@ def test_without_verdicts_it_reports_it(walk, tmp_path, unseen):
     assert page.short["episodes by level"] == "not known"
 
 
-def test_without_inputs_steps_are_the_plans(walk, tmp_path):
+def test_without_inputs_steps_are_from_the_plan(walk, tmp_path):
     events = events_of(walk)
     log = write_events(tmp_path / "log", without(events, "INPUT"))
     page = report(log, tmp_path / "a.html")
@@ -376,7 +376,7 @@ def test_without_inputs_steps_are_the_plans(walk, tmp_path):
         assert int(number) > 3 and float(mean) == pytest.approx(value, abs=0.005)
 
 
-def test_with_scores_alone_there_still_is_a_page(walk, tmp_path):
+def test_a_log_of_scores_only_gives_a_page(walk, tmp_path):
     events = [e for e in events_of(walk) if e.channel == "SADDLEWALK_SCORES"]
     page = report(write_events(tmp_path / "log", events), tmp_path / "a.html")
     assert page.text.count("Nothing readable was received on") == 7
@@ -392,7 +392,7 @@ def test_configuration_and_versions_are_the_logs(walk, page):
     assert values == pytest.approx(dict(zip(config.name, config.value, strict=True)), rel=1e-6)
 
 
-def test_runs_after_one_another_each_have_their_part(walk, tmp_path, unseen):
+def test_each_run_has_its_own_part(walk, tmp_path, unseen):
     events = events_of(walk)
     page = report(write_events(tmp_path / "log", [*events, *events]), tmp_path / "a.html")
     assert "Run 1 of 2" in page.text and "Run 2 of 2" in page.text
@@ -400,7 +400,7 @@ def test_runs_after_one_another_each_have_their_part(walk, tmp_path, unseen):
     assert durations == [["duration", f"{TICKS * TICK_S:.2f} s"]] * 2
 
 
-def test_a_run_ends_where_time_or_the_number_of_the_ticks_goes_back(walk, tmp_path):
+def test_a_run_ends_where_time_or_tick_number_goes_back(walk, tmp_path):
     def later(_, message):
         message.utime_us += 60_000_000
 
@@ -411,7 +411,7 @@ def test_a_run_ends_where_time_or_the_number_of_the_ticks_goes_back(walk, tmp_pa
         assert [run.ticks for run in load_session(log).runs] == [TICKS, TICKS]
 
 
-def test_a_configuration_alone_is_no_tick(walk, tmp_path):
+def test_a_configuration_alone_is_not_a_tick(walk, tmp_path):
     """As when the logger was stopped between it and the rest of its tick."""
     events = events_of(walk)
     last = max(i for i, event in enumerate(events) if event.channel == "SADDLEWALK_CONFIG")
@@ -434,7 +434,7 @@ def test_text_of_a_log_is_text_on_the_page(walk, tmp_path, unseen):
     assert all(address.startswith("data:") for address in page.addresses)
 
 
-def test_of_a_log_that_was_cut_the_rest_is_reported(walk, tmp_path, unseen, capsys):
+def test_a_truncated_log_is_reported_as_far_as_possible(walk, tmp_path, unseen, capsys):
     cut = tmp_path / "cut.lcmlog"
     cut.write_bytes((walk / "walk.lcmlog").read_bytes()[:100000])
     page = report(cut, tmp_path / "a.html", status=1)
@@ -442,20 +442,20 @@ def test_of_a_log_that_was_cut_the_rest_is_reported(walk, tmp_path, unseen, caps
     assert "incomplete: " in capsys.readouterr().err
 
 
-def refused(arguments: list[str], capsys) -> str:
+def rejection_of(arguments: list[str], capsys) -> str:
     assert main(["report", *arguments]) == 2
     printed = capsys.readouterr()
     assert (printed.out, printed.err.count("\n")) == ("", 1)
     return printed.err
 
 
-def test_logs_of_others_and_of_two_firmwares_at_once_are_rejected(walk, tmp_path, capsys):
+def test_unknown_logs_and_two_firmwares_at_once_are_rejected(walk, tmp_path, capsys):
     others = write_events(tmp_path / "others", [Event(1, "CAMERA", b"picture")])
-    assert "1 messages, on 'CAMERA', is one" in refused([str(others)], capsys)
+    assert "1 messages, on 'CAMERA', is one" in rejection_of([str(others)], capsys)
     health = [e for e in events_of(walk) if e.channel == "SADDLEWALK_HEALTH"]
     both = [event for pair in zip(health[50:], health, strict=False) for event in pair]
     log = write_events(tmp_path / "both", both)
-    assert "two firmware processes are logged at once" in refused([str(log)], capsys)
+    assert "two firmware processes are logged at once" in rejection_of([str(log)], capsys)
     assert {path.name for path in tmp_path.iterdir()} == {"others", "both"}
 
 
@@ -464,8 +464,8 @@ def test_where_it_is_written(walk, tmp_path, unseen, capsys):
     assert main(["report", str(log)]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "a.lcmlog.html")
     deep, missing = str(tmp_path / "no" / "where.html"), str(tmp_path / "none")
-    assert f"--out {deep}" in refused([str(log), "--out", deep], capsys)
-    assert f"--out {tmp_path}" in refused([str(log), "--out", str(tmp_path)], capsys)
-    assert f"is the same file as LOG {log}" in refused([str(log), "--out", str(log)], capsys)
-    assert f"{missing}: No such file" in refused([missing], capsys)
+    assert f"--out {deep}" in rejection_of([str(log), "--out", deep], capsys)
+    assert f"--out {tmp_path}" in rejection_of([str(log), "--out", str(tmp_path)], capsys)
+    assert f"is the same file as LOG {log}" in rejection_of([str(log), "--out", str(log)], capsys)
+    assert f"{missing}: No such file" in rejection_of([missing], capsys)
     assert {path.name for path in tmp_path.iterdir()} == {"a.lcmlog", "a.lcmlog.html"}

@@ -1,4 +1,4 @@
-"""`saddlewalk reproduce`: its numbers against the twin, its page, people, and what must be off."""
+"""`saddlewalk reproduce`: its numbers compared with the twin, its page, people, and failures."""
 
 import base64
 import csv
@@ -30,7 +30,7 @@ def simulated():
 
 @pytest.fixture(scope="module")
 def reproduced(tmp_path_factory):
-    """The folder that the command wrote, beside people of all kinds."""
+    """The output folder of the command, with recorded people of all kinds."""
     folder = tmp_path_factory.mktemp("paper")
     gait = folder / "gait"
     gait.mkdir()
@@ -80,7 +80,7 @@ def test_numbers_as_read_are_those_of_the_double_precision_twin(index):
         assert value == pytest.approx(float(printed[index]), abs=numbers.half_digit(printed[index]))
 
 
-def test_every_number_and_finding_comes_out_of_the_core(simulated):
+def test_every_number_and_finding_is_reproduced_by_the_core(simulated):
     compared = numbers.numbers(simulated)
     assert len(compared) == 16 + 9 * len(SPEEDS_M_S)
     assert [number for number in compared if not number.sound] == []
@@ -101,7 +101,7 @@ def test_every_number_and_finding_comes_out_of_the_core(simulated):
         ("pendulum_ratio", 1.01, {"pendulum by body height", "natural frequency", "XCoM limit"}),
     ],
 )
-def test_another_model_is_off(field, change, off, monkeypatch):
+def test_another_model_fails_the_comparison(field, change, off, monkeypatch):
     paper_body = simulations.mean_body
 
     def other_body(ankle: str = "erf"):
@@ -115,7 +115,7 @@ def test_another_model_is_off(field, change, off, monkeypatch):
     assert found >= off
 
 
-def test_a_rigid_leg_has_none_of_the_ankles_results(simulated):
+def test_a_rigid_leg_does_not_reproduce_the_ankles_results(simulated):
     rigid = replace(simulated, walks={key: simulated.rigid[key[0]] for key in simulated.walks})
     fallen = [found.claim for found in numbers.findings(rigid) if not found.holds]
     assert [claim.split(" (")[0] for claim in fallen] == [
@@ -139,19 +139,19 @@ def test_time_in_the_base_is_a_share_of_the_stride(speed, share, simulated):
 
 
 @pytest.mark.parametrize("speed", SPEEDS_M_S)
-def test_jump_is_that_at_the_saddle_itself_however_coarse_the_rows(speed, simulated):
+def test_the_jump_at_the_saddle_does_not_depend_on_the_rows(speed, simulated):
     coarse = simulations.simulate(speed, samples=simulations.COARSE_SAMPLES)
     assert coarse.jump_m == pytest.approx(simulated.at(speed).jump_m, abs=2e-4)
 
 
 @pytest.mark.parametrize("speed", [0.7, 1.5, 1.6, 1.9])
-def test_toe_off_angle_is_that_at_heel_strike_however_coarse_the_rows(speed):
+def test_the_toe_off_angle_does_not_depend_on_the_rows(speed):
     fine = simulations.simulate(speed, samples=8000)
     coarse = simulations.simulate(speed, samples=simulations.COARSE_SAMPLES)
     assert coarse.toe_off_rad == pytest.approx(fine.toe_off_rad, abs=math.radians(0.05))
 
 
-def test_a_number_that_is_missing_is_off():
+def test_a_missing_number_fails_the_comparison():
     lost = numbers.Number("x", "", "0.10", math.nan, "m", 0.005, "eq:03", stated=True)
     assert not lost.sound
     assert replace(lost, ours=0.1049).sound
@@ -170,7 +170,7 @@ def test_half_a_unit_of_the_last_digit(printed, half):
     assert numbers.half_digit(printed) == pytest.approx(half)
 
 
-def test_status_reports_that_a_number_is_off(monkeypatch, tmp_path, capsys):
+def test_exit_status_1_if_a_number_is_outside_its_tolerance(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(figures, "draw_all", lambda simulations, trials: [])
     monkeypatch.setattr(numbers, "TOE_OFF_DEG", ("9.6", "12.3", "15.5", "25.2"))
     assert main(["reproduce", "--out", str(tmp_path)]) == 1
@@ -181,14 +181,14 @@ def test_status_reports_that_a_number_is_off(monkeypatch, tmp_path, capsys):
     assert page.count("<strong>off</strong>") == 1
 
 
-def test_status_reports_that_a_finding_does_not_hold(monkeypatch, tmp_path, capsys):
+def test_exit_status_1_if_a_finding_does_not_hold(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(figures, "draw_all", lambda simulations, trials: [])
     monkeypatch.setattr(numbers, "VARIABILITY_SD", 1.0)
     assert main(["reproduce", "--out", str(tmp_path)]) == 1
     assert "7 of 8 findings hold; off: The vertical trajectory is acc" in capsys.readouterr().out
 
 
-def test_page_holds_every_figure_and_needs_nothing_else(reproduced):
+def test_the_page_is_self_contained_with_every_figure(reproduced):
     page = (reproduced / "paper.html").read_text()
     embedded = re.findall(r'<img src="data:image/png;base64,([^"]+)"', page)
     drawn = [(reproduced / f"{name}.png").read_bytes() for name in FIGURES]
@@ -227,7 +227,7 @@ def test_readings_are_the_rows_of_the_equations_page(monkeypatch, tmp_path):
         readings.readings()
 
 
-def test_without_trials_only_orendurff_is_drawn_and_it_reports_it(monkeypatch, tmp_path, capsys):
+def test_without_trials_only_orendurff_is_drawn_with_a_note(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(figures, "draw_all", lambda simulations, trials: [])
     assert main(["reproduce", "--out", str(tmp_path)]) == 0
     assert "only the points of Orendurff 2004" in capsys.readouterr().out
@@ -291,7 +291,7 @@ def test_a_folder_that_cannot_be_written_is_named(monkeypatch, tmp_path, capsys)
     assert f"--out {tmp_path}/file" in capsys.readouterr().err
 
 
-def test_table_cells_stay_cells():
+def test_table_cells_are_escaped():
     page = html_page.page("<t>", html_page.table(("a", "b"), [["|y|", "**off** < 1"]]), {})
     assert "<td>|y|</td>" in page.replace("&#124;", "|")
     assert "<td><strong>off</strong> &lt; 1</td>" in page
@@ -300,7 +300,7 @@ def test_table_cells_stay_cells():
 
 if TRIALS.is_dir():
 
-    def test_recorded_people_measure_as_their_manifest_reports():
+    def test_recorded_people_match_their_manifest():
         lines = (TRIALS / "manifest.csv").read_text().splitlines()
         manifest = {row["file"]: row for row in csv.DictReader(lines)}
         trials = load_trials(TRIALS)

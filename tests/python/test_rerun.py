@@ -1,4 +1,4 @@
-"""`saddlewalk rerun`: a log gives the same bits again, and what is not the same is named."""
+"""`saddlewalk rerun`: a log gives the same bits again, and a difference is named."""
 
 import os
 import random
@@ -49,14 +49,14 @@ def events_of(walk: Path) -> list:
     return list(LcmLog(walk / "walk.lcmlog"))
 
 
-def test_a_log_is_equal_to_the_bit(walk, capsys):
+def test_a_log_is_recomputed_bit_for_bit(walk, capsys):
     status, shown, _ = rerun(walk / "walk.lcmlog", capsys)
     assert status == 0
     assert f"lockstep: 1 run, {TICKS} ticks recomputed" in shown
     assert f"all {OUTPUTS} recorded outputs are equal" in shown
 
 
-def test_a_run_in_real_time_is_equal_too(tmp_path, capsys):
+def test_a_run_in_real_time_is_recomputed_bit_for_bit(tmp_path, capsys):
     """With the ages that its measurements had; of which a CAN log does not know."""
     options = ["--can", private_udp(), "--lcm", own_lcm()]
     body = ["--height", "1.6", "--mass", "48.123"]
@@ -173,14 +173,14 @@ def test_a_configuration_of_another_version_is_rejected(walk, tmp_path, capsys):
     assert "saddlewalk 9.9.9, and stride_magic is not a field" in shown
 
 
-def test_a_log_from_mid_run_reports_it(walk, tmp_path, capsys):
+def test_a_log_from_mid_run_says_so(walk, tmp_path, capsys):
     events = events_of(walk)
     status, _, shown = rerun(write_events(tmp_path / "log", events[500:]), capsys)
     assert (status, shown.count("\n")) == (2, 1)
     assert "the log begins in mid-run" in shown and f"to {TICKS - 1} cannot be computed" in shown
 
 
-def test_runs_after_one_another_are_each_computed(walk, tmp_path, capsys):
+def test_successive_runs_are_each_recomputed(walk, tmp_path, capsys):
     events = events_of(walk)
     log = write_events(tmp_path / "log", [*events, *events])
     status, shown, _ = rerun(log, capsys)
@@ -209,8 +209,8 @@ def test_lost_outputs_are_reported_and_the_others_compared(walk, tmp_path, capsy
     assert f"SADDLEWALK_BOS of {TICKS} ticks is not in the log, the first time of tick 0" in shown
 
 
-def test_a_log_of_before_a_channel_is_whole(walk, tmp_path, capsys):
-    """None of it at all; where some of it is, what lacks was lost."""
+def test_a_log_of_older_firmware_is_complete(walk, tmp_path, capsys):
+    """Without any message of the channel. If there are some, the others were lost."""
     events = events_of(walk)
     there = [i for i, event in enumerate(events) if event.channel == "SADDLEWALK_BALANCE"]
     older = [event for event in events if event.channel != "SADDLEWALK_BALANCE"]
@@ -223,13 +223,13 @@ def test_a_log_of_before_a_channel_is_whole(walk, tmp_path, capsys):
     assert "SADDLEWALK_BALANCE of 1 ticks is not in the log, the first time of tick 3" in shown
 
 
-def test_a_log_without_inputs_reports_it(walk, tmp_path, capsys):
+def test_a_log_without_inputs_says_so(walk, tmp_path, capsys):
     events = [e for e in events_of(walk) if e.channel != "SADDLEWALK_INPUT"]
     status, _, shown = rerun(write_events(tmp_path / "log", events), capsys)
     assert (status, shown.count("\n")) == (2, 1) and "nothing came on SADDLEWALK_INPUT" in shown
 
 
-def test_a_log_that_was_cut_reports_it(walk, tmp_path, capsys):
+def test_a_truncated_log_says_so(walk, tmp_path, capsys):
     cut = tmp_path / "cut.lcmlog"
     cut.write_bytes((walk / "walk.lcmlog").read_bytes()[:-150])
     status, shown, _ = rerun(cut, capsys)
@@ -246,7 +246,7 @@ def test_a_log_that_was_cut_reports_it(walk, tmp_path, capsys):
         (bytes.fromhex("eda1da01") + bytes(range(256)), "none of its events"),
     ],
 )
-def test_what_is_no_log_is_one_line(tmp_path, capfd, content, named):
+def test_a_file_that_is_not_a_log_is_a_one_line_error(tmp_path, capfd, content, named):
     """LCM's own reader prints messages, which are hidden."""
     file = tmp_path / "file"
     file.write_bytes(content)
@@ -255,7 +255,7 @@ def test_what_is_no_log_is_one_line(tmp_path, capfd, content, named):
     assert str(file) in shown and named in shown
 
 
-def test_a_missing_file_and_options_for_an_lcm_log_are_one_line(walk, tmp_path, capsys):
+def test_a_missing_file_and_options_for_an_lcm_log_are_one_line_errors(walk, tmp_path, capsys):
     status, _, shown = rerun(tmp_path / "none.lcmlog", capsys)
     assert (status, shown.count("\n")) == (2, 1) and "No such file" in shown
     status, _, shown = rerun(walk / "walk.lcmlog", capsys, "--mass", "70")
@@ -278,7 +278,7 @@ def frames_of(walk: Path) -> list[can.Message]:
 
 
 @pytest.mark.parametrize("suffix", [".log", ".blf", ".asc"])
-def test_a_can_log_is_equal_to_the_bit(walk, tmp_path, capsys, suffix):
+def test_a_can_log_is_recomputed_bit_for_bit(walk, tmp_path, capsys, suffix):
     status, shown, _ = rerun(can_log(tmp_path / f"walk{suffix}", frames_of(walk)), capsys)
     assert status == 0
     assert f"{TICKS} ticks" in shown and f"all {FRAMES} recorded outputs are equal" in shown
@@ -299,7 +299,7 @@ def test_a_can_log_with_another_body_differs(walk, capsys):
     assert status == 1 and "SCORES_FORCE GRAVITY" in shown
 
 
-def test_a_can_log_from_mid_run_or_with_losses_reports_it(walk, tmp_path, capsys):
+def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
     frames = frames_of(walk)
     log = can_log(tmp_path / "mid.log", frames[29 * 5 :])
     status, _, shown = rerun(log, capsys)
@@ -338,7 +338,7 @@ def test_frames_that_the_host_rejected_are_rejected_again(walk, tmp_path, capsys
     assert status == 0, shown
 
 
-def test_a_command_that_cannot_be_used_is_not_used_again(walk, tmp_path, capsys):
+def test_an_unusable_command_is_not_used_in_the_rerun(walk, tmp_path, capsys):
     frames = frames_of(walk)
     command = [frame for frame in frames if frame.arbitration_id == 0x100][90]
     command.data[2:4] = b"\x00\x80"  # the speed: not available
@@ -347,7 +347,7 @@ def test_a_command_that_cannot_be_used_is_not_used_again(walk, tmp_path, capsys)
     assert status == 0, shown
 
 
-def test_a_broken_can_log_reports_where(walk, tmp_path, capsys):
+def test_a_damaged_can_log_says_where(walk, tmp_path, capsys):
     lines = (walk / "walk.candump.log").read_text().splitlines()
     broken = tmp_path / "broken.log"
     broken.write_text("\n".join([*lines[:1000], "(17953285 saddlewalk"]))
@@ -363,7 +363,7 @@ def test_a_broken_can_log_reports_where(walk, tmp_path, capsys):
     assert (status, shown.count("\n")) == (2, 1) and "none of the frames COMMAND" in shown
 
 
-def test_nothing_of_this_machine_is_asked(walk, tmp_path):
+def test_reruns_do_not_depend_on_this_machine(walk, tmp_path):
     """The log alone, elsewhere, without LCM's network or a home folder."""
     log = shutil.copy(walk / "walk.lcmlog", tmp_path / "from-afar")
     script = Path(sys.executable).with_name("saddlewalk")

@@ -1,4 +1,4 @@
-"""`saddlewalk plan --schedule`: the files it refuses, and the walk that comes of a good one."""
+"""`saddlewalk plan --schedule`: rejected files, and the walk of a valid one."""
 
 import csv
 import io
@@ -80,7 +80,7 @@ def test_distance_is_the_integral_of_speed(schedule, ankle, capsys):
     assert x[-1] > 7
 
 
-def test_wanted_speeds_are_reached_at_the_configured_rate(schedule, capsys, tmp_path):
+def test_commanded_speeds_are_reached_at_the_configured_rate(schedule, capsys, tmp_path):
     config = tmp_path / "person.toml"
     config.write_text("acceleration_m_s2 = 0.25\n")
     rows = plan(capsys, schedule("0,1.2\n8,0.6\n"), "--config", str(config), "--duration", "12")
@@ -97,7 +97,7 @@ def test_a_row_holds_from_its_time_on(schedule, capsys):
     assert speed[np.searchsorted(t, 8.08 - 1e-6)] == pytest.approx(0.54, abs=1e-6)
 
 
-def test_a_schedule_that_stands_is_one_row(schedule, capsys):
+def test_a_schedule_that_only_stands_is_one_row(schedule, capsys):
     (row,) = plan(capsys, schedule("0,0\n"))
     assert row["mode"] == "standing" and row["event"] == row["time_to_toe_off_s"] == ""
     assert row["s_pend"] == row["s_jump"] == ""
@@ -140,7 +140,7 @@ def test_the_last_foot_lands_when_the_body_comes_to_rest(schedule, capsys):
     assert landed_s == pytest.approx(rest_s, abs=1e-3)
 
 
-def test_a_walk_that_is_wanted_again_during_the_last_swing_steps_on(schedule, capsys):
+def test_a_walk_commanded_during_the_last_swing_goes_on(schedule, capsys):
     rows = plan(capsys, schedule("0,0.6\n4,0\n5.6,0.6\n"))
     modes = [row["mode"] for row in rows]
     restart = modes.index("starting", modes.index("stopping"))
@@ -157,7 +157,7 @@ def test_long_rows_keep_every_event(schedule, capsys):
     assert [name for name, _ in coarse] == [name for name, _ in fine]
 
 
-def test_the_foot_stands_where_it_is_from_heel_strike_to_toe_off(schedule, capsys):
+def test_the_foot_does_not_move_from_heel_strike_to_toe_off(schedule, capsys):
     rows = plan(capsys, schedule(START_CHANGE_STOP), "--dt", "0.01")
     t = column(rows, "t_s")
     events = events_of(rows)
@@ -203,7 +203,7 @@ def test_picture_is_drawn(capsys, tmp_path):
         ("0\n", "line 2: not as many cells"),
     ],
 )
-def test_a_bad_file_is_one_line_that_names_the_place(rows, named, schedule, capsys, tmp_path):
+def test_a_bad_file_is_a_one_line_error_with_its_place(rows, named, schedule, capsys, tmp_path):
     path, out = schedule(rows), tmp_path / "plan.csv"
     assert run("--schedule", path, "--out", str(out)) == 2
     captured = capsys.readouterr()
@@ -229,7 +229,7 @@ def test_a_missing_column_is_named(schedule, capsys):
         (["--schedule", str(EXAMPLE), "--picture", "walk.wood"], "--picture walk.wood"),
     ],
 )
-def test_a_bad_option_is_one_line_that_names_it(options, named, capsys, tmp_path):
+def test_a_bad_option_is_a_one_line_error(options, named, capsys, tmp_path):
     assert run(*options, "--out", str(tmp_path / "plan.csv")) == 2
     captured = capsys.readouterr()
     assert captured.err.count("\n") == 1 and named in captured.err

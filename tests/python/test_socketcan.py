@@ -1,4 +1,4 @@
-"""The kernel's own CAN: the whole demo, can-utils beside it, lost links and full queues."""
+"""The kernel's own CAN: the whole demo, can-utils, lost links and full queues."""
 
 import contextlib
 import itertools
@@ -71,7 +71,7 @@ class Candump:
         return [text for text in heard if text != as_text(self.LISTENING)]
 
 
-def test_candump_sees_what_the_firmware_hears_and_reports():
+def test_candump_shows_the_firmwares_input_and_output():
     with Candump() as candump, lockstep(spec=CLASSIC) as host:
         sent = [host.send("COMMAND", **WALK)]
         sent += [host.send(name, **values) for name, values in STANDING.items()]
@@ -132,7 +132,7 @@ def test_cantools_decodes_what_candump_sees():
         assert done.stdout.count(f"::\n{name}(") == 2
 
 
-def test_the_demo_walks_on_vcan0_by_itself(tmp_path, capsys):
+def test_the_demo_uses_vcan0_by_default(tmp_path, capsys):
     """In lockstep: an emulated processor may be too slow for a wearer in real time."""
     assert main(["demo", "--clock=lockstep", f"--out={tmp_path}"]) == 0
     printed = capsys.readouterr().out
@@ -174,7 +174,7 @@ def test_the_firmware_ticks_on_while_its_interface_is_down():
         assert count_of("without link", words) > 3 * MESSAGES_PER_TICK
 
 
-def test_the_firmware_comes_back_to_an_interface_made_anew():
+def test_the_firmware_reopens_a_recreated_interface():
     with Host("--lcm=none", spec=CLASSIC) as host:
         host.tick()
         begun_s = time.monotonic()
@@ -186,7 +186,7 @@ def test_the_firmware_comes_back_to_an_interface_made_anew():
         assert count_of("without link", words) > 3 * MESSAGES_PER_TICK
 
 
-def test_a_full_queue_costs_frames_but_no_tick():
+def test_a_full_queue_loses_frames_but_no_tick():
     with Host("--lcm=none", spec=CLASSIC) as host:
         host.tick()
         begun_s = time.monotonic()

@@ -53,7 +53,7 @@ def test_the_jar_is_made_again_only_when_a_type_is_newer(build, monkeypatch, cap
     os.utime(jar)
 
 
-def test_missing_java_is_one_line(tmp_path, monkeypatch, capsys):
+def test_missing_java_is_a_one_line_error(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("SADDLEWALK_BUILD", str(tmp_path))
     monkeypatch.setenv("PATH", "")
     assert main(["spy"]) == 2
@@ -63,7 +63,7 @@ def test_missing_java_is_one_line(tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_missing_display_is_one_line(build, monkeypatch, capsys):
+def test_a_missing_display_is_a_one_line_error(build, monkeypatch, capsys):
     monkeypatch.setenv("SADDLEWALK_BUILD", str(build))
     monkeypatch.delenv("DISPLAY", raising=False)
     assert main(["spy"]) == 2

@@ -75,7 +75,7 @@ def test_a_recording_may_come_from_standard_input(recorded, monkeypatch, capsys)
         assert supervised(capsys, "-") == from_file
 
 
-def test_what_was_assumed_and_what_is_strange_is_reported(recorded, tmp_path, capsys):
+def test_assumptions_and_implausible_values_are_reported(recorded, tmp_path, capsys):
     data = Path(recorded["c3d"]).read_bytes()
     Path(recorded["c3d"]).write_bytes(data.replace(b"UNITS", b"UNITX", 1))
     assert main(["supervise", "--in", recorded["c3d"]]) == 0
@@ -169,9 +169,7 @@ def test_what_a_demo_writes_is_scored(walk, capsys):
         ("t_s,mode,true_com_x_m,true_com_y_m,true_com_z_m", "no column true_com_vx_m_s"),
     ],
 )
-def test_a_table_of_no_layout_is_rejected_by_the_one_it_is_nearest_to(
-    header, named, tmp_path, capsys
-):
+def test_an_unknown_table_is_compared_with_the_closest_layout(header, named, tmp_path, capsys):
     path = tmp_path / "table.csv"
     path.write_text(header + "\n")
     assert main(["supervise", "--in", str(path)]) == 2
@@ -180,7 +178,7 @@ def test_a_table_of_no_layout_is_rejected_by_the_one_it_is_nearest_to(
 
 
 @pytest.mark.parametrize("command", [["supervise", "--in"], ["replay"]])
-def test_a_file_that_is_no_recording_is_one_line(command, tmp_path, capsys):
+def test_a_file_that_is_not_a_recording_is_a_one_line_error(command, tmp_path, capsys):
     path = tmp_path / "walk.c3d"
     path.write_bytes(b"t_s,com_x_m\n")
     assert main([*command, str(path)]) == 2

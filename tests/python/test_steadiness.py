@@ -1,4 +1,4 @@
-"""Only one steady straight walk is calibrated to: jumps, turns and stumbles are refused."""
+"""Only one steady straight walk is calibrated to: jumps, turns and stumbles are rejected."""
 
 import csv
 import dataclasses
@@ -109,13 +109,13 @@ NOT_STEADY = {
 
 @pytest.mark.parametrize(("movement", "words"), NOT_STEADY.values(), ids=NOT_STEADY)
 def test_another_movement_is_rejected_with_number_and_limit(movement, words):
-    with pytest.raises(UserError, match=f"not one steady straight walk: .*{words}") as refused:
+    with pytest.raises(UserError, match=f"not one steady straight walk: .*{words}") as rejected:
         measure(movement())
-    assert "at most" in str(refused.value)
+    assert "at most" in str(rejected.value)
 
 
 @pytest.mark.parametrize("command", ["calibrate", "follow"])
-def test_a_turn_in_a_laboratory_s_file_is_one_line(command, tmp_path, capsys):
+def test_a_turn_in_a_laboratory_file_is_a_one_line_error(command, tmp_path, capsys):
     walk = bent(walk_of(PERSON, 1.0, 6.0), 90)
     path = c3d_file(tmp_path / "turn.c3d", laboratory(walk, LABORATORIES["y up, walking along x"]))
     assert main([command, path]) == 2
@@ -142,7 +142,7 @@ def test_a_steady_walk_that_is_not_perfect_is_measured(movement):
     assert measure(movement()).speed_m_s > 0.5
 
 
-def test_left_and_right_exchanged_are_reported_to_be(tmp_path, capsys):
+def test_exchanged_left_and_right_are_reported(tmp_path, capsys):
     walk = walk_of(PERSON, 1.0)
     swapped = dataclasses.replace(walk, heel_m=walk.heel_m[::-1], toe_m=walk.toe_m[::-1])
     path = tmp_path / "walk.csv"

@@ -95,7 +95,7 @@ def test_scores_equal_their_formulas(speed, capsys, tmp_path):
 
 
 @pytest.mark.parametrize("speed", [0.9, 1.2, 1.6])
-def test_a_walk_as_planned_is_stable_and_where_it_is_expected(speed, capsys, tmp_path):
+def test_a_planned_walk_is_stable_and_as_expected(speed, capsys, tmp_path):
     twin = Twin(speed, math.radians(10))
     path = write(tmp_path / "states.csv", steady_walk(twin, 6))
     for row in supervise(capsys, "--in", path, "--speed", str(speed), *prompt(tmp_path)):
@@ -122,7 +122,7 @@ def ankle_work_j(twin: Twin) -> float:
     return twin.mass * GRAVITY * twin.d_h**2 / twin.pendulum
 
 
-def test_whom_no_step_can_catch_is_unstable(capsys, tmp_path):
+def test_a_state_beyond_any_recovery_step_is_unstable(capsys, tmp_path):
     states = steady_walk(Twin(1.2, 0.0), 5)
     for state in states[-4:]:
         state["com_vy_m_s"] += 2.0
@@ -147,7 +147,7 @@ def test_v_comp_is_the_mean_speed_of_the_last_step(capsys, tmp_path):
         assert before == "" or float(before) != pytest.approx(mean, abs=1e-6)
 
 
-def test_speed_stands_in_until_a_step_is_complete(capsys, tmp_path):
+def test_the_measured_speed_is_used_until_a_step_is_complete(capsys, tmp_path):
     path = write(tmp_path / "states.csv", steady_walk(Twin(1.2, 0.0), 4))
     without = supervise(capsys, "--in", path)
     assert without[0]["v_comp_m_s"] == "" and without[0]["s_sw"] == ""
@@ -206,7 +206,7 @@ def test_missing_or_absurd_measurement_is_flagged_and_gives_no_number(
     assert all(math.isfinite(float(value)) for value in after.values())
 
 
-def test_feet_together_is_flagged_not_divided_by(capsys, tmp_path):
+def test_feet_at_the_same_place_are_flagged(capsys, tmp_path):
     states = steady_walk(Twin(1.2, 0.0), 5)
     states[-1]["right_x_m"], states[-1]["right_y_m"] = (
         states[-1]["left_x_m"] + 5e-4,
@@ -241,7 +241,7 @@ def bad_files():
 
 
 @pytest.mark.parametrize(("lines", "named"), list(bad_files()))
-def test_bad_file_is_one_line_and_leaves_nothing_behind(lines, named, capsys, tmp_path):
+def test_a_bad_file_is_a_one_line_error_without_output(lines, named, capsys, tmp_path):
     source, out = tmp_path / "states.csv", tmp_path / "scores.csv"
     source.write_text("\n".join(lines) + "\n")
     assert main(["supervise", "--in", str(source), "--out", str(out)]) == 2

@@ -100,7 +100,7 @@ def test_a_tick_with_a_lost_frame_is_not_used(lost):
     assert plan_of(heard[-1], FIRMWARE).speed_m_s == pytest.approx(1.2)
 
 
-def test_a_plan_with_a_number_that_is_not_available_is_no_plan():
+def test_a_plan_with_an_unavailable_number_is_not_a_plan():
     sender, reader = Sender(), TickReader()
     heard = [reader.feed(frame) for frame in tick_frames(sender, Y=math.nan)]
     assert plan_of(heard[-1], FIRMWARE) is None
@@ -117,7 +117,7 @@ class Flooded:
 
 
 @pytest.mark.parametrize("within_s", [-1.0, 0.0, 0.1])
-def test_a_flood_without_a_tick_does_not_hold_up(within_s):
+def test_a_flood_without_a_tick_does_not_delay(within_s):
     bus = Flooded(can.Message(arbitration_id=0x7FF, is_extended_id=False, data=bytes(8)))
     reader = TickReader()
     start_s = time.monotonic()
@@ -126,7 +126,7 @@ def test_a_flood_without_a_tick_does_not_hold_up(within_s):
     assert reader.receiver.malformed >= 1
 
 
-def test_a_tick_that_waits_is_taken_even_when_time_is_up():
+def test_a_waiting_tick_is_returned_even_after_the_deadline():
     frames = iter(tick_frames(Sender()))
 
     class Waiting:

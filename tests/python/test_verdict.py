@@ -15,7 +15,7 @@ from twin import GRAVITY, Twin, bos_margin, to_saddle
 SPEEDS = [0.5, 0.7, 1.0, 1.2, 1.6]
 DT_S = 0.08
 D_H_M = 0.10
-FORESIGHT_S = 0.4
+HORIZON_S = 0.4
 MARGIN_TOLERANCE_M = 2e-5
 ENERGY_TOLERANCE_J = 5e-3  # the states' rounding: 500 N over 10 um
 
@@ -23,7 +23,7 @@ ENERGY_TOLERANCE_J = 5e-3  # the states' rounding: 500 N over 10 um
 CONFIG = f"""
 previous_level = 1
 level_hold_ticks = 1
-prediction_horizon_s = {FORESIGHT_S}
+prediction_horizon_s = {HORIZON_S}
 caution_xcom_ap_m = 0.13
 caution_xcom_ml_m = 0.07
 cop_shift_ap_m = 0.10
@@ -38,7 +38,7 @@ Row = dict[str, str]
 
 
 def ray_exit(left, right, point, velocity) -> np.ndarray:
-    """Where the ray leaves the base of support, from inside: the first of its meetings."""
+    """Where a ray from inside leaves the base of support: its first intersection."""
     (x, y), radius = to_saddle(left, right, point), 0.5 * float(np.linalg.norm(left - right))
     centre = 0.5 * (left + right)
     ux, uy = to_saddle(left, right, centre + velocity / np.linalg.norm(velocity))
@@ -127,7 +127,7 @@ def expected(twin: Twin, t: float, deviation: Deviation) -> dict[str, float]:
     planned_m, planned_m_s = twin.com_xy(t), twin.com_xy_velocity(t)
     com_m, velocity_m_s = planned_m + deviation.place_m, planned_m_s + deviation.velocity_m_s
     landing = Landing(twin, t)
-    grown = deviation.grown(twin.frequency, min(landing.time_s - t, FORESIGHT_S))
+    grown = deviation.grown(twin.frequency, min(landing.time_s - t, HORIZON_S))
     u_com = potential_j(twin, left, right, com_m)
     k = kinetic_j(twin, velocity_m_s)
     return {
@@ -201,7 +201,7 @@ def assert_equal_the_model(rows: list[Row], twin: Twin, deviation: Deviation) ->
 
 
 @pytest.mark.parametrize("speed", SPEEDS)
-def test_planned_walk_is_as_the_model_reports(speed, capsys, tmp_path):
+def test_a_planned_walk_matches_the_twin(speed, capsys, tmp_path):
     states = planned_states(capsys, speed, 4)
     rows = supervise(capsys, tmp_path, states, "--speed", str(speed))
     assert len(rows) == len(states)
@@ -217,7 +217,7 @@ DEVIATIONS = {
 
 @pytest.mark.parametrize("speed", SPEEDS)
 @pytest.mark.parametrize("name", DEVIATIONS)
-def test_deviation_from_the_plan_grows_as_the_model_reports(speed, name, capsys, tmp_path):
+def test_deviation_from_the_plan_grows_as_in_the_twin(speed, name, capsys, tmp_path):
     states = planned_states(capsys, speed, 3)
     deviate(states, DEVIATIONS[name])
     rows = supervise(capsys, tmp_path, states, "--speed", str(speed))
@@ -225,7 +225,7 @@ def test_deviation_from_the_plan_grows_as_the_model_reports(speed, name, capsys,
 
 
 @pytest.mark.parametrize("speed", SPEEDS)
-def test_walk_of_one_s_own_is_as_the_model_reports(speed, capsys, tmp_path):
+def test_an_own_walk_matches_the_twin(speed, capsys, tmp_path):
     """Without a plan, from the last step: as exact as a heel strike is seen, here within 2 ms."""
     states = planned_states(capsys, speed, 2, 0.002)
     rows = supervise(capsys, tmp_path, states)
@@ -242,7 +242,7 @@ def test_walk_of_one_s_own_is_as_the_model_reports(speed, capsys, tmp_path):
 
 
 @pytest.mark.parametrize("speed", SPEEDS)
-def test_steady_plan_is_stable_when_it_is_followed(speed, capsys, tmp_path):
+def test_following_a_steady_plan_is_stable(speed, capsys, tmp_path):
     """But for where even the planned CoM is higher above the border than the ankles can absorb."""
     twin = Twin(speed, 0.0)
     rows = supervise(capsys, tmp_path, planned_states(capsys, speed, 10), "--speed", str(speed))
@@ -254,7 +254,7 @@ def test_steady_plan_is_stable_when_it_is_followed(speed, capsys, tmp_path):
 
 
 @pytest.mark.parametrize("speed", SPEEDS)
-def test_steady_walk_of_one_s_own_is_never_unstable(speed, capsys, tmp_path):
+def test_an_own_steady_walk_is_never_unstable(speed, capsys, tmp_path):
     """Without a plan: unknown until a step is complete, and known from then on."""
     rows = supervise(capsys, tmp_path, planned_states(capsys, speed, 10))
     levels = [row["level"] for row in rows]
@@ -287,7 +287,7 @@ def test_push_makes_the_walk_unstable(speed, name, capsys, tmp_path):
 
 @pytest.mark.parametrize("column", STATE_COLUMNS[1:])
 @pytest.mark.parametrize("led", [True, False])
-def test_missing_cell_is_unknown_at_once_and_only_then(column, led, capsys, tmp_path):
+def test_a_missing_cell_is_unknown_in_its_tick_only(column, led, capsys, tmp_path):
     states = planned_states(capsys, 1.0, 6)
     options = ("--speed", "1.0") if led else ()
     undisturbed = supervise(capsys, tmp_path, states, *options)
@@ -325,7 +325,7 @@ def test_push_of_a_standing_person_ends_in_unstable(push_m_s, capsys, tmp_path):
     assert rows[20]["level"] == "unstable" and rows[20]["can_stop"] == "0"
 
 
-def test_nobody_who_was_seen_to_stand_or_step_is_unknown(capsys, tmp_path):
+def test_the_level_is_known_after_a_stand_or_a_step(capsys, tmp_path):
     states = standing_states(10)
     for k, state in enumerate(states):
         state["com_vx_m_s"], state["com_x_m"] = 0.5, 0.5 * DT_S * k

@@ -57,7 +57,7 @@ def test_another_machine_cannot_command_by_lcm():
 
 
 @in_private_network
-def test_another_machine_commands_by_lcm_where_an_option_reports_it():
+def test_another_machine_commands_by_lcm_if_an_option_allows_it():
     with neighbour() as other, Host("--lcm", URL, "--lcm-from-network", COMMAND_HOLDS) as host:
         assert "this machine (CAN over UDP), anyone on the network (LCM)" in host.first_line
         node = LcmNode(URL)
@@ -103,7 +103,7 @@ def test_a_forged_source_address_does_not_help(source):
 
 
 @in_private_network
-def test_this_machine_commands_whichever_way_the_group_is_routed():
+def test_this_machine_commands_whatever_the_multicast_route():
     """By the default route or by loopback, and when that changes while the process runs."""
     from private_test_network import route
 

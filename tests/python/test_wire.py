@@ -342,7 +342,7 @@ def test_output_from_c_to_python(codec):
     assert receiver.accepted == OUTPUTS * len(NUMBERS)
 
 
-def test_a_tick_has_as_many_messages_here_as_there(codec):
+def test_python_and_c_have_the_same_messages_per_tick(codec):
     header = paths.CHECKOUT / "firmware/wire/include/saddlewalk/wire.h"
     (frames,) = re.findall(r"#define SADDLE_WIRE_OUTPUT_FRAMES (\d+)u", header.read_text())
     assert int(frames) == len(ticks.MESSAGES) == len(NUMBERS)
@@ -437,7 +437,7 @@ def test_counter_rule_on_both_sides(codec):
         assert python.bad_counter > 0
 
 
-def test_any_bytes_are_checked_alike(codec):
+def test_arbitrary_bytes_are_checked_alike(codec):
     """Random identifiers, lengths and bytes, some with the right CRC."""
     rng = random.Random(SEED + 4)
     c, python = ffi.new("saddle_wire_receiver_t *"), wire.Receiver()
@@ -475,6 +475,6 @@ def test_only_classic_data_frames_are_accepted(flag):
         ("MEASURED_LEFT", {"CONTACT": 1, "X": 0.0, "Y": 0.0, "Z": 0.0}, "'Z'"),
     ],
 )
-def test_sender_names_what_is_wrong(name, values, named):
+def test_the_sender_names_a_wrong_signal(name, values, named):
     with pytest.raises(ValueError, match=named):
         wire.Sender().frame(name, **values)

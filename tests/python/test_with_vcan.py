@@ -16,7 +16,7 @@ def with_vcan(*arguments: object, **options) -> subprocess.CompletedProcess:
     return subprocess.run(command, capture_output=True, text=True, check=False, **options)
 
 
-def test_what_is_missing_is_one_line(tmp_path):
+def test_missing_requirements_are_a_one_line_error(tmp_path):
     for program in ("bash", "dirname", "mkdir"):
         (tmp_path / program).symlink_to(shutil.which(program))
     done = with_vcan(tmp_path / "out", "true", env={"PATH": str(tmp_path)})
@@ -26,7 +26,7 @@ def test_what_is_missing_is_one_line(tmp_path):
     assert "can-utils" in done.stderr
 
 
-def test_too_few_arguments_are_one_line(tmp_path):
+def test_too_few_arguments_are_a_one_line_error(tmp_path):
     done = with_vcan(tmp_path)
     assert (done.returncode, done.stderr) == (2, "with-vcan: usage: with-vcan OUT COMMAND...\n")
 

@@ -39,7 +39,7 @@ static void test_the_first_that_commands_has_authority_until_released(void)
     expect_counts(2, 0, 1);
 }
 
-static void test_a_chosen_source_is_the_only_one(void)
+static void test_only_the_chosen_source_commands(void)
 {
     saddle_inbox_init(&inbox, SADDLE_SOURCE_CAN);
     saddle_inbox_take_command(&inbox, SADDLE_SOURCE_LCM, &walk, 0);
@@ -120,7 +120,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_first_that_commands_has_authority_until_released);
-    RUN_TEST(test_a_chosen_source_is_the_only_one);
+    RUN_TEST(test_only_the_chosen_source_commands);
     RUN_TEST(test_what_cannot_be_used_gives_no_authority_and_no_age);
     RUN_TEST(test_a_command_comes_by_can_too_and_a_code_changes_no_input);
     RUN_TEST(test_each_part_has_its_age);

@@ -21,7 +21,7 @@ def add_parser(subparsers: Any) -> None:
         "calibrate",
         help="fit the gait model to a person's recorded walks",
         description="Fit the gait model to one person's recorded walks, each at a steady speed. "
-        "Speeds that differ by 0.2 m/s or more give regressions of the person's own; with one "
+        "With speeds that differ by 0.2 m/s or more the regressions are the person's; with one "
         "speed the paper's slopes are kept.",
     )
     add_recordings(parser)
@@ -113,7 +113,7 @@ def _fit_table(fits: "list[Fit]") -> Any:
 
 def _missing_quantities(walks: "list[WalkMeasures]") -> list[str]:
     return [
-        f"{walk.source} does not give the {quantity}: {reason}"
+        f"{walk.source}: {quantity} unknown: {reason}"
         for walk in walks
         for quantity, reason in walk.missing.items()
     ]

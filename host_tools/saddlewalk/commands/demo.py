@@ -47,7 +47,7 @@ LINE_S = 2.0
 LISTEN_S = 0.25
 
 HOST, EMULATED = "host", "qemu-m4"
-NEW_KEY = ""  # of --command-key without a file
+NEW_KEY = ""  # --command-key without a file
 
 
 def add_parser(subparsers: Any) -> None:
@@ -67,7 +67,7 @@ def add_parser(subparsers: Any) -> None:
         "--firmware",
         choices=(HOST, EMULATED),
         default=HOST,
-        help="the process saddlewalk-host, or a Cortex-M4F in QEMU, without LCM and in "
+        help="the process saddlewalk-host, or an emulated Cortex-M4F in QEMU, without LCM and in "
         "lockstep (default host)",
     )
     add_walk_options(
@@ -246,7 +246,7 @@ def _host(
     options += [f"--lcm={args.lcm}"] if args.lcm else []
     options += [f"--command-key={args.command_key}"] if args.command_key else []
     with open_bus(args.can) as bus:
-        _refuse_company(bus, lcm)
+        _check_bus_is_free(bus, lcm)
         with _recorder(run_folder, lcm) as recorder, running_host(*options):
             yield bus, recorder
 
@@ -255,11 +255,11 @@ def _host(
 def _controller(
     args: argparse.Namespace, config: Any, lcm: Any, run_folder: "RunFolder"
 ) -> "Iterator[tuple[Any, Recorder]]":
-    """The same of an emulated controller."""
+    """The bus of an emulated controller, and its recorder."""
     from saddlewalk.emulation.qemu import running_controller
 
     with running_controller(config) as controller:
-        _refuse_company(controller.bus, lcm)
+        _check_bus_is_free(controller.bus, lcm)
         with _recorder(run_folder, lcm) as recorder:
             print("LCM: only from the wearer; a controller has no LCM")
             yield controller.bus, recorder
@@ -271,7 +271,7 @@ def _recorder(run_folder: "RunFolder", lcm: Any) -> "Recorder":
 
     if run_folder.earlier:
         print(
-            f"{run_folder.folder} holds an earlier run: this one replaces it and what was made of "
+            f"{run_folder.folder} holds an earlier run; this one replaces it and what was made of "
             "its log, when it has ended",
             flush=True,
         )
@@ -292,7 +292,7 @@ def _open_lcm(url: str | None) -> Any:
         private_network.enter()
 
 
-def _refuse_company(bus: Any, lcm: Any) -> None:
+def _check_bus_is_free(bus: Any, lcm: Any) -> None:
     """Reject buses on which another walk is running. Before anything is written."""
     from saddlewalk.transport.lcmbus import receive
 
@@ -321,7 +321,7 @@ def _display(args: argparse.Namespace, lcm: Any) -> Iterator[Any]:
         return
     listener = Listener()
     listener.subscribe(lcm)
-    listener.line()  # what it imports must not hold up the walk
+    listener.line()  # imported now, so that it does not delay the walk
     on_terminal = sys.stdout.isatty()
     live = Live(listener.panel(), auto_refresh=False) if on_terminal else None
 
@@ -348,7 +348,7 @@ def _finish(
     recorder: "Recorder",
     checks: "list[Check]",
 ) -> int:
-    """Print the result; 0 only if the walk was sound."""
+    """Print the result; returns 0 only if all checks passed."""
     print(summary(wearer, exoskeleton))
     print(level_times(recorder) + (", until the fall" if wearer.fallen else ""))
     if exoskeleton.punctuality:
@@ -362,7 +362,7 @@ def _finish(
 
 
 def level_times(recorder: "Recorder") -> str:
-    """For how long each level was announced."""
+    """How long each level was announced, as text."""
     from saddlewalk.contract import TICK_S
     from saddlewalk.verdict import ticks_in
 

@@ -26,7 +26,7 @@ SPEED_M_S = 1.2
 IMPULSE_MAX_N_S = 1000.0
 DURATION_MAX_S = 86400.0
 RIGHT_AHEAD_M = (
-    0.02  # far above the sensor noise, which would otherwise decide which foot steps first
+    0.02  # well above the sensor noise, so that the noise does not decide which foot steps first
 )
 
 
@@ -38,14 +38,14 @@ def add_parser(subparsers: Any) -> None:
         type=number_in(0, 100),
         default=1.0,
         metavar="X",
-        help="factor of the sensor noise and of the wearer's unsteadiness (default 1)",
+        help="factor on the sensor noise and on the wearer's unsteadiness (default 1)",
     )
     add_input(
         parser,
         "--faults",
         type=Path,
         metavar="FILE",
-        help="TOML with faults, all injected at once; examples/faults.toml explains the format",
+        help="TOML with faults, all in the same walk; examples/faults.toml explains the format",
     )
     add_input(
         parser,
@@ -159,20 +159,22 @@ def _occurrences(args: argparse.Namespace) -> "list[Occurrence]":
     if args.faults is None:
         return []
     if args.clock == "lockstep":
-        raise UserError("--faults: firmware in lockstep waits for what is lost: --clock realtime")
+        raise UserError(
+            "--faults needs --clock realtime: in lockstep the firmware waits for a lost frame"
+        )
     random = np.random.default_rng(args.seed)
     occurrences = [draw(fault, random) for fault in read_scenario(args.faults).faults]
     for occurrence in occurrences:
         if not occurrence.is_of_frames:
             raise UserError(
-                f"{args.faults}: {occurrence.kind} happens to the firmware, of which emulate only "
-                "sends the frames: try it with saddlewalk faults"
+                f"{args.faults}: {occurrence.kind} is a fault of the firmware, but emulate only "
+                "sends frames: use saddlewalk faults"
             )
     return occurrences
 
 
 def clock_of(args: argparse.Namespace) -> str:
-    """Of --clock; MuJoCo's time is its own."""
+    """The choice of --clock; MuJoCo has a simulated clock only."""
     if args.plant != MUJOCO:
         return args.clock or "realtime"
     if args.clock == "realtime":

@@ -24,11 +24,11 @@ def add_parser(subparsers: Any) -> None:
         parser,
         "--out",
         output=_output,
-        beside=lambda args: exported(args.log, args.format),
+        default_path=lambda args: exported(args.log, args.format),
         type=Path,
         metavar="OUT",
         help="mcap: the file; csv and parquet: the folder, which gets a file for each channel "
-        "(default: beside LOG, as walk.mcap, walk-csv or walk-parquet of walk.lcmlog)",
+        "(default: in LOG's folder; for walk.lcmlog walk.mcap, walk-csv or walk-parquet)",
     )
     parser.set_defaults(run=run)
 
@@ -43,7 +43,7 @@ def run(args: argparse.Namespace) -> int:
     if not tables:
         raise UserError(
             f"{args.log}: none of its {log.events} messages, on {', '.join(others)}, is of "
-            "a type of saddlewalk's"
+            "a saddlewalk type"
         )
     stream = sys.stderr if str(args.out) == "-" else sys.stdout
     for path in export(log, tables, args.format, args.out):

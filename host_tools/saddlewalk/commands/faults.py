@@ -29,7 +29,8 @@ FILE_WIDTH = 132
 
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
-        "faults", help="inject faults into many walks: what is detected, is any output unsafe?"
+        "faults",
+        help="inject faults into many walks: which are detected, and is any output unsafe?",
     )
     add_input(
         parser,
@@ -60,7 +61,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """1: an output was unsafe."""
+    """Exit status 1 if an output was unsafe."""
     from rich.console import Console
 
     from saddlewalk.faults.campaign import rows_of

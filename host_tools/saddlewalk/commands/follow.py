@@ -1,4 +1,4 @@
-"""`saddlewalk follow`: tracking error of recorded walks, by default and calibrated."""
+"""`saddlewalk follow`: tracking error of recorded walks, with default and calibrated models."""
 
 import argparse
 import json
@@ -25,10 +25,10 @@ WIDEST = 1000  # characters
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "follow",
-        help="tracking error of recorded walks, by default and calibrated",
+        help="tracking error of recorded walks, with the default and the calibrated gait model",
         description="For each recorded walk, RMS of recorded minus planned with the paper's "
-        "defaults and after calibration: to that walk itself, with --leave-out also to the other "
-        "recordings, which must be of the same person, or, with --config, before. CoM y, CoM z, "
+        "defaults and with a model calibrated to that walk (with --leave-out also to the other "
+        "recordings, which must be of the same person) or given by --config. CoM y, CoM z, "
         "its shape (without the mean difference), the swing foot's x from the stance foot over "
         "the swing and at landing, and the time from passing the stance foot to heel strike.",
     )
@@ -176,7 +176,7 @@ def _table(followed: "list[Followed]") -> Any:
         if found.limited
     )
     if limited:
-        table.caption = escape(f"Plan slower than the walk, which it can't reach: {limited}")
+        table.caption = escape(f"The plan cannot reach the speed and is slower: {limited}")
     return table
 
 

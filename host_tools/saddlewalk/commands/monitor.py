@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
 
 @dataclass
 class Listener:
-    """The newest message of each channel, when any came, and how many could not be read."""
+    """The newest message of each channel, the time of the last one, and unreadable ones."""
 
     latest: dict[str, Any] = field(default_factory=dict)
     truth: tuple[float, Any] | None = None  # when it came, and what
@@ -78,7 +78,7 @@ class Listener:
 
     @property
     def fallen(self) -> bool:
-        """The wearer has fallen, as far as is known now."""
+        """Whether the wearer has fallen, by messages that are not old."""
         from saddlewalk.dashboard import SILENT_AFTER_S
 
         if self.truth is None:
@@ -91,13 +91,13 @@ class Listener:
         return self.latest.keys() == CHANNELS.keys()
 
     def line(self) -> str:
-        """One plain line of what was heard."""
+        """What was received, as a line of plain text."""
         from saddlewalk.dashboard import summary
 
         return summary(self._heard()) + (f" | {self._note()}" if self.malformed else "")
 
     def panel(self) -> Any:
-        """The same for a terminal."""
+        """What was received, as a panel for a terminal."""
         from rich.console import Group
 
         from saddlewalk.dashboard import render
@@ -126,7 +126,7 @@ def _once(bus: Any, listener: Listener) -> int:
 
 
 def _watch(bus: Any, listener: Listener) -> NoReturn:
-    """Until Ctrl-C: a live panel on a terminal, else one line a second."""
+    """Until Ctrl-C: a live panel on a terminal, else a line per second."""
     if sys.stdout.isatty():
         _watch_panel(bus, listener)
     else:

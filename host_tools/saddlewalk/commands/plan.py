@@ -23,8 +23,8 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "plan",
         help="plan a walk as CSV",
-        description="Plan a walk as CSV: a steady one that is under way, or one from standing by "
-        "a schedule of speeds. With a schedule, `event` names what came since the row before and "
+        description="Plan a walk as CSV: a steady walk in progress, or a walk from standing by "
+        "a schedule of speeds. With a schedule, `event` names the events since the row before and "
         "`event_t_s` says when, finer than the rows; several are separated by a space.",
     )
     add_gait_options(parser)
@@ -38,7 +38,7 @@ def add_parser(subparsers: Any) -> None:
         "--duration",
         type=number_in(0, 1e6, "s"),
         metavar="S",
-        help="with --schedule (default: until it stands again, or 5 s after the last row)",
+        help="with --schedule (default: until standing again, or 5 s after the last row)",
     )
     add_output(
         parser,
@@ -52,7 +52,7 @@ def add_parser(subparsers: Any) -> None:
         type=number_in(SHORTEST_DT_S, 1e4, "s"),
         default=0.08,
         metavar="S",
-        help="time from row to row (default 0.08)",
+        help="time between rows (default 0.08)",
     )
     parser.add_argument("--ankle", choices=ANKLES, help="ankle strategy (default erf)")
     add_body_options(parser)
@@ -61,12 +61,12 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    _refuse_mixture(args)
+    _reject_mixed_options(args)
     return _plan_schedule(args) if args.schedule is not None else _plan_steady(args)
 
 
-def _refuse_mixture(args: argparse.Namespace) -> None:
-    """Raise UserError for an option that has no meaning for this kind of walk."""
+def _reject_mixed_options(args: argparse.Namespace) -> None:
+    """Raise UserError for an option that does not apply to this kind of walk."""
     scheduled = args.schedule is not None
     if scheduled and args.strides is not None:
         raise UserError("--strides goes with --speed; with --schedule give --duration")
@@ -126,7 +126,7 @@ def _plan_schedule(args: argparse.Namespace) -> int:
 
 
 def _until_the_end(args: argparse.Namespace, changes: list[Any], core: Any) -> Iterator[Any]:
-    """The instants of the walk: for --duration, else until it stands or 5 s after the last row."""
+    """The instants of the walk: --duration, else until it stands or 5 s after the last row."""
     from saddlewalk.contract import STANDING
     from saddlewalk.planning import schedule
 
@@ -147,7 +147,7 @@ def _note_angles(args: argparse.Namespace, limits: int) -> None:
     if limits & library().SADDLE_LIMIT_HEEL_STRIKE:
         _note(f"--hs-angle {args.hs_angle:g} exceeds heel_strike_max_rad: limited")
     if limits & library().SADDLE_LIMIT_TOE_OFF:
-        _note("the toe-off angle that this gait asks for is outside the ankle's geometry: limited")
+        _note("the toe-off angle of this gait exceeds the ankle's range: limited")
 
 
 def _note(text: str) -> None:
@@ -162,7 +162,9 @@ def _schedule_row(core: Any, instant: Any) -> list[Cell]:
     plan = instant.output.plan
     scores = core.score_plan(plan)
     row = row_of(instant.t_s, plan, scores)
-    if not scores.valid & library().SADDLE_VALID_STEP:  # before the first step and after the last
+    if (
+        not scores.valid & library().SADDLE_VALID_STEP
+    ):  # as before the first step and after the last
         for name in ("s_pend", "s_jump"):
             row[COLUMNS.index(name)] = None
     times_s = (plan.time_to_heel_strike_s, plan.time_to_toe_off_s)

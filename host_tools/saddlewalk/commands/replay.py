@@ -30,7 +30,9 @@ def add_parser(subparsers: Any) -> None:
         metavar="RECORDING",
         help=".c3d, .trc, or CSV with t, com_x ... rtoe_z in s and m; - reads CSV from stdin",
     )
-    trial.add_argument("--sample", choices=SAMPLE_NAMES, help="a recorded person of gaitkit's data")
+    trial.add_argument(
+        "--sample", choices=SAMPLE_NAMES, help="a recorded person from the package gaitkit"
+    )
     add_markers(parser)
     parser.add_argument(
         "--can",

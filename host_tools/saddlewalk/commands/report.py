@@ -1,4 +1,4 @@
-"""`saddlewalk report`: an LCM log as one HTML page that needs nothing else."""
+"""`saddlewalk report`: an LCM log as one self-contained HTML page."""
 
 import argparse
 import sys
@@ -17,16 +17,16 @@ def add_parser(subparsers: Any) -> None:
         description="Write a log of `saddlewalk demo` or of lcm-logger as one HTML page with "
         "everything embedded: scores, levels and alarms with their reasons, steps and their "
         "variability, distance, data quality, configuration. Exit status 1 if the log is "
-        "incomplete, which the page then states.",
+        "incomplete; the page then says so.",
     )
     add_input(parser, "log", type=Path, metavar="LOG", help="an LCM log")
     add_output(
         parser,
         "--out",
-        beside=lambda args: reported(args.log),
+        default_path=lambda args: reported(args.log),
         type=Path,
         metavar="report.html",
-        help="the page (default: beside LOG, as walk.lcmlog.html of walk.lcmlog)",
+        help="the page (default: in LOG's folder; for walk.lcmlog walk.lcmlog.html)",
     )
     parser.set_defaults(run=run)
 

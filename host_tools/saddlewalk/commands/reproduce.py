@@ -20,7 +20,7 @@ def add_parser(subparsers: Any) -> None:
         help="the paper's figures and numbers, from the C core",
         description="Draw the paper's figures from the C core and compare every number that the "
         f"paper states. Writes {PAGE}, a self-contained page, and each figure as PNG. Exit "
-        "status 1 if a number is off by more than its tolerance or a finding does not hold.",
+        "status 1 if a number is outside its tolerance or a finding does not hold.",
     )
     add_output(
         parser,
@@ -36,7 +36,7 @@ def add_parser(subparsers: Any) -> None:
         "--gait",
         type=Path,
         metavar="FOLDER",
-        help="recorded trials to draw beside the plan: CSV files as for `saddlewalk replay`, and "
+        help="recorded trials to compare with the plan: CSV files as for `saddlewalk replay`, and "
         "manifest.csv, which describes them, if present",
     )
     parser.set_defaults(run=run)

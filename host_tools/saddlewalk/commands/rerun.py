@@ -21,7 +21,7 @@ def add_parser(subparsers: Any) -> None:
         "bit for bit. Status 0: every output in the log was recomputed and is equal; 1: one "
         "differs or could not be computed; 2: not a log of a run. An LCM log has all inputs of "
         "any run. A CAN log (candump's .log, .blf, .asc, ...) holds those of a run in lockstep "
-        "from its start, but for the configuration, which the options give; of HEALTH, the counts "
+        "from its start, except the configuration, which the options give; in HEALTH, the counts "
         "of late ticks and rejected frames are not compared.",
     )
     add_input(parser, "log", type=Path, metavar="LOG", help="an LCM log or a CAN log")
@@ -37,7 +37,7 @@ def run(args: argparse.Namespace) -> int:
     if is_lcm_log(args.log):
         from saddlewalk.logs.rerun import rerun_lcm
 
-        _refuse_body_options(args)
+        _reject_body_options(args)
         log: LcmLog | CanLog = LcmLog(args.log)
         report = _named(args.log, rerun_lcm, log)
     else:
@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     return 0 if report.sound else 1
 
 
-def _refuse_body_options(args: argparse.Namespace) -> None:
+def _reject_body_options(args: argparse.Namespace) -> None:
     for option in ("height", "mass", "config"):
         value = getattr(args, option)
         if value is not None:
@@ -66,7 +66,7 @@ def _named(log: Path, compute: Any, *arguments: Any) -> "Report":
 
 
 def summary(report: "Report") -> list[str]:
-    """The report in lines, the first difference before all that follows from it."""
+    """The report in lines: the first difference, then what follows from it."""
     runs = "1 run" if report.runs == 1 else f"{report.runs} runs"
     lines = [f"{report.source}: {runs}, {report.ticks} ticks recomputed"]
     if report.first:
@@ -75,7 +75,7 @@ def summary(report: "Report") -> list[str]:
             f"{report.different_ticks} of {report.ticks} ticks differ from what was recorded",
         ]
     lines += [f"not compared: {gap}" for gap in report.not_compared]
-    lines += [f"{channel} is not in the log, nor compared" for channel in report.not_logged]
+    lines += [f"{channel} is not in the log and was not compared" for channel in report.not_logged]
     if report.sound:
         lines.append(f"all {report.compared} recorded outputs are equal, bit for bit")
     return lines

@@ -33,10 +33,8 @@ def run(args: argparse.Namespace) -> int:
         print(jar)
         return 0
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
-        raise UserError(
-            "lcm-spy needs a display and DISPLAY is not set: `saddlewalk monitor` needs none"
-        )
-    open_lcm(args.lcm)  # says what is wrong in a line, which Java does not
+        raise UserError("lcm-spy needs a display and DISPLAY is not set: use `saddlewalk monitor`")
+    open_lcm(args.lcm)  # an error in one line, instead of Java's trace
     url = args.lcm or DEFAULT_URL
     environment = os.environ | {"CLASSPATH": str(jar)}
     os.execve(lcm_program("lcm-spy"), ["lcm-spy", f"--lcm-url={url}"], environment)

@@ -33,7 +33,7 @@ def add_parser(subparsers: Any) -> None:
         "--speed",
         type=speed,
         metavar="M/S",
-        help="compare with the steady walk that is planned at this speed, with the left foot under "
+        help="compare with the steady walk planned at this speed, with the left foot under "
         "the CoM in the first row; default: with the recorded walk's own last step",
     )
     add_body_options(parser)

@@ -24,9 +24,9 @@ from saddlewalk.transport.authentication import Authenticator
 from saddlewalk.transport.wire import Sender, identifier
 
 SILENCE_S = 3.0
-START_TICKS = 125  # that do not do as commanded, before a walk is given up: 10 s
+START_TICKS = 125  # without following commands, after which the walk is given up: 10 s
 RESEND_S = 0.25
-COMMAND_S = 1.5 * TICK_S  # after the last command, when no tick comes that it would answer
+COMMAND_S = 1.5 * TICK_S  # time from the last command to the next one, if no tick comes
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Tick:
 
 
 class Observer:
-    """Receives what happens; the base class ignores it."""
+    """Callbacks during a walk; the base class does nothing."""
 
     finished = False  # True: end the walk now
 
@@ -50,7 +50,7 @@ class Observer:
         """After the firmware's tick has come and before the wearer moves on."""
 
     def poll(self) -> None:
-        """At least once a tick: time to read other inputs."""
+        """Called at least once a tick, to read other inputs."""
 
 
 def plan_of(messages: Messages, own_core: core.Core) -> Plan | None:
@@ -144,7 +144,7 @@ class Exoskeleton:
         self._joint_core = joint_core
         self._codes_demanded = False
         self._begun = False
-        self._ignored_ticks = 0  # ticks in a row
+        self._ignored_ticks = 0  # number of successive ticks
         self._pushed_n_s = 0j
 
     def run(self, clock: str, duration_s: float) -> None:
@@ -252,15 +252,15 @@ class Exoskeleton:
         own = plans.planned(joint_core.plan_at(0.0)[0], own_core)
         if own is None or not own.agrees(plan):
             raise UserError(
-                f"the firmware on {self._bus.channel_info} plans otherwise than the joint "
-                "controller, which has heard the same: start it anew, with the same configuration"
+                f"the firmware on {self._bus.channel_info} plans differently from the joint "
+                "controller, which received the same frames: restart it with the same configuration"
             )
         return lambda since_s: plans.planned(joint_core.plan_at(since_s)[0], own_core)
 
     def _wrong_response(self) -> UserError:
         options = "--command-key" if self._codes_demanded else "--clock and --lcm"
         return UserError(
-            f"the firmware on {self._bus.channel_info} answers but does not do as commanded: "
+            f"the firmware on {self._bus.channel_info} answers but does not follow the commands: "
             f"give both the same {options}"
         )
 
@@ -281,7 +281,9 @@ class Exoskeleton:
         frame.is_rx, frame.timestamp = False, time.time()
         try:
             self._bus.send(frame)
-        except can.CanOperationError:  # no room: lost, as the firmware sees by its age
+        except (
+            can.CanOperationError
+        ):  # no room: the frame is lost, and the firmware sees that by the age
             return
         self.frames_sent += 1
         if self._joint_core:
@@ -290,14 +292,14 @@ class Exoskeleton:
             observer.frame(frame)
 
     def _command(self, time_s: float) -> tuple[int, float, float]:
-        """Mode, speed and heel-strike angle asked for at that time of the walk."""
+        """Mode, speed and heel-strike angle to command at that time of the walk."""
         asked = self._schedule(time_s)
         speed_m_s = asked.speed_m_s or 0.0
         walk = self._begun and speed_m_s > 0
         return WALK if walk else STAND, speed_m_s, asked.heel_strike_rad
 
     def _send_command_frame(self, time_s: float) -> None:
-        """With authentication, none is sent until the firmware has opened a session."""
+        """With authentication nothing is sent before the firmware has opened a session."""
         names = ("MODE", "SPEED", "HEEL_STRIKE")
         command = dict(zip(names, self._command(time_s), strict=True))
         if self._authenticator:
@@ -317,7 +319,7 @@ class Exoskeleton:
             self._send(self._sender.frame(name, CONTACT=contact, X=foot.real, Y=foot.imag))
 
     def _command_in_real_time(self) -> None:
-        """What is asked for at the next tick."""
+        """The command for the next tick."""
         tick_s = (round(self._wearer.time_s / TICK_S) + 1) * TICK_S
         (self._send_command_frame if self._authenticator else self._publish_command)(tick_s)
 

@@ -47,7 +47,9 @@ def _await_ready(process: subprocess.Popen[str]) -> None:
 
 
 def _stop(process: subprocess.Popen[str]) -> str:
-    """Its last line. A process that ignores SIGTERM is killed, which its status then shows."""
+    """End it; returns its last line. A process that ignores SIGTERM is killed, as its status then
+    shows.
+    """
     process.terminate()
     try:
         return process.communicate(timeout=STOP_TIMEOUT_S)[0]

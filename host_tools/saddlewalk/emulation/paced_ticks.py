@@ -11,8 +11,8 @@ from saddlewalk.ticks import FrameBus, Messages, next_tick
 
 WAKE_UP_S = 0.01  # measurements at 100 Hz
 WAKE_UPS_A_TICK = round(TICK_S / WAKE_UP_S)
-GRACE_S = 0.025  # maximum wait beyond a tick's time: the firmware may be late too
-ARRIVALS = 3  # the earliest sets the clock
+GRACE_S = 0.025  # maximum wait after a tick's time, since the firmware may be late too
+ARRIVALS = 3  # ticks of which the earliest sets the clock
 _COUNTS = 16  # of the alive counter
 
 
@@ -29,7 +29,7 @@ class PacedTicks:
     def __init__(
         self, bus: FrameBus, hear: Callable[[can.Message], Messages | None], silence_s: float
     ) -> None:
-        """Raises UserError when a tick is silence_s away; hear() makes ticks of frames."""
+        """Raises UserError if no tick comes for silence_s. hear() makes ticks of frames."""
         self._bus, self._hear = bus, hear
         self._held: Messages | None = None
         while next_tick(bus, hear, 0.0):  # their arrival times are unknown
@@ -60,7 +60,7 @@ class PacedTicks:
         return self._held is not None and self._place <= wake_up
 
     def _receive(self, wake_up: int, deadline_s: float) -> None:
-        """Hold the next tick. A process that is late first catches up to the time of the next."""
+        """Receive the next tick and keep it. A late process first catches up to its time."""
         now_s, due = time.monotonic(), self._place + WAKE_UPS_A_TICK
         if now_s >= deadline_s and wake_up < due:
             return

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-STALL_S = 0.02  # later than that, ticks are given older measurements than on an idle computer
+STALL_S = 0.02  # later measurements reach the tick after the one on an idle computer
 BEFORE_S = 3.0  # a fall takes up to two steps
 
 
@@ -17,16 +17,16 @@ class Stall:
 
 @dataclass
 class Punctuality:
-    """How late the wearer's process measured, and the longest gap between ticks."""
+    """How late the wearer's process measures, and the longest gap between ticks."""
 
     worst_s: float = 0.0
-    gap_s: float = 0.0  # the longest between two ticks, as they came
+    gap_s: float = 0.0  # longest time between two ticks, as received
     stalls: list[Stall] = field(default_factory=list)
     _late_s: float = 0.0
     _tick_s: float = math.nan
 
     def measured(self, time_s: float, late_s: float) -> None:
-        """A measurement was sent at time_s of the walk, so late."""
+        """A measurement was sent at time_s of the walk, late_s late."""
         self.worst_s = max(self.worst_s, late_s)
         if late_s > STALL_S and self._late_s <= STALL_S:
             self.stalls.append(Stall(time_s, late_s))
@@ -36,11 +36,11 @@ class Punctuality:
 
     def ticked(self, now_s: float) -> None:
         """A tick was received, by the monotonic clock."""
-        self.gap_s = max(self.gap_s, now_s - self._tick_s)  # the first is no gap: not a number
+        self.gap_s = max(self.gap_s, now_s - self._tick_s)  # NaN for the first
         self._tick_s = now_s
 
     def stall_before(self, time_s: float) -> Stall | None:
-        """The longest in the last seconds before a fall."""
+        """The longest stall in the last seconds before time_s."""
         near = [stall for stall in self.stalls if 0 <= time_s - stall.time_s <= BEFORE_S]
         return max(near, key=lambda stall: stall.late_s, default=None)
 

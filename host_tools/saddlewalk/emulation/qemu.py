@@ -103,7 +103,9 @@ def _command(page: Path, line: int) -> list[str]:
 
 
 def _last_words(process: subprocess.Popen[str]) -> str:
-    """Its last line. One that does not end by itself is killed, which its status then shows."""
+    """Wait for its end; returns its last line. It is killed if it does not end, as its status then
+    shows.
+    """
     try:
         words = process.communicate(timeout=STOP_TIMEOUT_S)[0]
     except subprocess.TimeoutExpired:

@@ -1,8 +1,8 @@
 """Marker positions from a C3D file, by ezc3d.
 
-In a process of its own, with bounded memory and time: ezc3d may crash on a damaged file, and takes
-its process along. Bounds follow from the file's size; a sound file takes 13 bytes of memory and
-30 ns for each of its bytes (float data, ezc3d 1.7.2, 2026).
+In a process of its own, with bounded memory and time: ezc3d may crash its process on a damaged
+file. Bounds follow from the file's size; a sound file takes 13 bytes of memory and 30 ns for each
+of its bytes (float data, ezc3d 1.7.2, 2026).
 """
 
 import importlib.util
@@ -30,7 +30,7 @@ LEAST_CPU_S, CPU_A_BYTE_S = 10.0, 2e-6
 
 @dataclass(frozen=True)
 class _Limits:
-    memory: int  # bytes, beside what the process has
+    memory: int  # bytes, in addition to what the process has mapped
     cpu_s: float
 
 
@@ -94,7 +94,7 @@ def _limit_this_process(limits: _Limits) -> None:
 
 
 def _unit(path: Path, point: Mapping[str, Any]) -> str:
-    """Empty for a file without POINT:UNITS, or with an empty one."""
+    """The unit of the points; empty if POINT:UNITS is missing or empty."""
     texts = point["UNITS"]["value"] if "UNITS" in point else []
     text = str(texts[0]) if len(texts) else ""
     return unit_of(path, text) if text.strip().strip("\0") else ""

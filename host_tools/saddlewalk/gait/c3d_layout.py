@@ -1,7 +1,7 @@
-"""The size that a C3D file states, checked before a reader allocates memory for it.
+"""Checks the sizes stated in a C3D file before a reader allocates memory for them.
 
-The header and the parameter section hold counts and lengths that a damaged file can have wrong by
-orders of magnitude. Each is compared with the bytes that are there. Lengths and offsets are in the
+The header and the parameter section hold counts and lengths that may be wrong by orders of
+magnitude in a damaged file. Each is compared with the file's size. Lengths and offsets are in the
 byte order of the processor that the file names; blocks are 512 bytes, counted from 1.
 """
 
@@ -25,11 +25,11 @@ Counts = Mapping[tuple[str, str], tuple[int, ...]]  # integers by (group, parame
 
 
 class _LayoutError(Exception):
-    """The error, without the file's name."""
+    """The text of an error, without the file's name."""
 
 
 def check_layout(path: Path) -> None:
-    """Raises UserError naming what does not fit into the file."""
+    """Raises UserError naming the size that exceeds the file."""
     try:
         data = path.read_bytes()
     except OSError as error:
@@ -55,7 +55,7 @@ def _check(data: bytes) -> None:
 
 
 def _integers(data: bytes, section: int, order: str) -> Counts:
-    """Integers of the parameter section, each of whose records fits into the file."""
+    """Integers of the parameter section. Raises _LayoutError if a record exceeds the file."""
     groups, found = {}, []
     for at, name, number, end in _records(data, section, order):
         if number < 0:
@@ -89,7 +89,9 @@ def _records(data: bytes, section: int, order: str) -> Iterator[tuple[int, str, 
 
 
 def _parameter(data: bytes, at: int, end: int, order: str, name: str) -> tuple[int, ...]:
-    """Its value if it is of integers, as unsigned 16-bit. Its dimensions must fit its record."""
+    """Its value as unsigned 16-bit integers, if that is its type. Its dimensions must fit its
+    record.
+    """
     kind, dimensions = struct.unpack_from("bB", data, at) if at + 2 <= end else (0, 0)
     if kind not in ELEMENT_BYTES or dimensions > MOST_DIMENSIONS:
         raise _LayoutError(
@@ -108,12 +110,14 @@ def _parameter(data: bytes, at: int, end: int, order: str, name: str) -> tuple[i
 
 
 def _check_frames(data: bytes, processor: int, counts: Counts) -> None:
-    """Points and frames against the data section, as the smallest that the file states."""
+    """Check points and frames against the data section, by the smallest counts that the file
+    states.
+    """
     points, analogs, first, last = struct.unpack_from(BYTE_ORDERS[processor] + "4H", data, 2)
     (start,) = struct.unpack_from(BYTE_ORDERS[processor] + "H", data, 16)
     if not 2 * BLOCK <= BLOCK * (start - 1) < len(data):
         raise _LayoutError(f"the data begin in block {start} of {len(data) // BLOCK}")
-    points = counts.get(("POINT", "USED"), (points,))[0]  # ezc3d goes by it too
+    points = counts.get(("POINT", "USED"), (points,))[0]  # as in ezc3d
     if points == 0:
         raise _LayoutError("POINT:USED is 0: there are no markers")
     frames = _frames(first, last, counts)

@@ -18,17 +18,17 @@ from saddlewalk.gait.in_sample import no_worse
 from saddlewalk.gait.measures import WalkMeasures
 from saddlewalk.gait.planned_time import TimedStep, timed_steps
 
-SPEED_SPREAD_M_S = 0.2  # speeds that differ by less are one speed
+SPEED_SPREAD_M_S = 0.2  # speeds that differ by less count as one speed
 FEWEST_STEPS = 2
 FEWEST_STEPS_OF_A_FOOT = 3
 ONE_SPEED = "one speed: the offset, with the paper's slope"
 NARROWEST_M = 0.02  # the core treats narrower steps as this wide
-PENDULUM_RATIO = (0.45, 0.65)  # of a human's CoM height to the body height
+PENDULUM_RATIO = (0.45, 0.65)  # ratio of a person's CoM height to body height
 
 
 @dataclass(frozen=True)
 class _Samples:
-    """One quantity, of every step in which it was measured."""
+    """Samples of a quantity: one for each step in which it was measured."""
 
     speed_m_s: np.ndarray
     value: np.ndarray
@@ -55,7 +55,7 @@ def calibrate(
     mass_kg: float | None = None,
     ripples: Sequence[float] = (),
 ) -> list[Fit]:
-    """Fit all that the walks of one person show; ripples: of each walk, NaN where it is not known.
+    """Fit everything that one person's walks show. ripples: one for each walk, NaN if unknown.
 
     Raises UserError naming a value that is impossible for humans.
     """
@@ -108,7 +108,7 @@ def checked(fits: Sequence[Fit]) -> Any:
 
 
 def _body(walks: Sequence[WalkMeasures], height_m: float | None, mass_kg: float | None) -> Fit:
-    """The leg is a pendulum from the CoM, at its highest, to the CoP beside it, [E1]."""
+    """The leg is a pendulum from the CoP to the CoM at its highest point, [E1]."""
     given = {"body_height_m": height_m or DEFAULT_HEIGHT_M, "body_mass_kg": mass_kg}
     fields = {name: value for name, value in given.items() if value is not None}
     mass = "" if mass_kg else f"; mass not given: the paper's {DEFAULT_MASS_KG} kg"
@@ -163,7 +163,7 @@ def _step_width(walks: Sequence[WalkMeasures], paper: Any) -> Fit:
 def _width_fields(
     line: _Line, slow_m_s: float, fast_m_s: float, slow_m: float, fast_m: float
 ) -> dict[str, float]:
-    """Beyond the two speeds the width is constant, [E3]."""
+    """Fields of the width, which is constant beyond the two speeds, [E3]."""
     return {
         "step_width_slow_m": slow_m,
         "step_width_fast_m": fast_m,
@@ -175,7 +175,7 @@ def _width_fields(
 
 
 def _offset_width(samples: _Samples, paper: Any) -> dict[str, float]:
-    """The paper's shape, shifted as a whole; its slope ends where it would become too narrow."""
+    """The paper's regression with an offset; the slope ends where steps would become too narrow."""
     from saddlewalk.core import library, model_of
 
     model = model_of(paper)
@@ -219,7 +219,7 @@ def _half_foot(walks: Sequence[WalkMeasures]) -> Fit:
 
 
 def _asymmetry(walks: Sequence[WalkMeasures], config: Any) -> Fit:
-    """How much longer than the regression the steps of each foot are, [E4]."""
+    """Ratio of each foot's step length to the regression, [E4]."""
     foot = np.concatenate([walk.foot for walk in walks])
     counts = [int((foot == side).sum()) for side in (0, 1)]
     if min(counts) < FEWEST_STEPS_OF_A_FOOT:
@@ -237,7 +237,7 @@ def _asymmetry(walks: Sequence[WalkMeasures], config: Any) -> Fit:
 
 
 def _ripple(walks: Sequence[WalkMeasures], ripples: Sequence[float]) -> Fit:
-    """Where the supervisor begins to learn it, [E32]."""
+    """The supervisor's initial value of the ripple, [E32]."""
     known = [
         (ripple, len(walk.length_m))
         for walk, ripple in zip(walks, ripples, strict=False)

@@ -1,4 +1,4 @@
-"""Marker positions as in a laboratory's file, before markers are identified."""
+"""Marker positions as in a laboratory's file, before the markers are identified."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,12 +8,16 @@ import numpy as np
 from saddlewalk.errors import UserError
 
 METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
-UNIT_WORDS = {"met": "m", "cent": "cm", "mil": "mm"}  # beginnings: a C3D text may be cut to four
+UNIT_WORDS = {
+    "met": "m",
+    "cent": "cm",
+    "mil": "mm",
+}  # prefixes: a C3D file may cut the text to four characters
 
 
 @dataclass(frozen=True)
 class Capture:
-    """Markers in the axes and the unit of the laboratory; NaN: not seen."""
+    """Markers in the laboratory's axes and unit; NaN: not visible."""
 
     time_s: np.ndarray  # (n,)
     markers: dict[str, np.ndarray]  # name -> (n, 3)

@@ -13,16 +13,16 @@ import numpy as np
 
 from saddlewalk.gait.recording import Recording
 
-REVERSAL_M = 0.1  # a heel or toe that swings back by less has not begun or ended a step
-FIRST_RISE_M = 0.01  # less rise than this before the first maximum may be the start of the trial
-FLAT_SPEED_M_S = 0.25  # a flat foot's CoP moves slower, seen over FLAT_WINDOW_S
+REVERSAL_M = 0.1  # a heel or toe that moves back by less does not begin or end a step
+FIRST_RISE_M = 0.01  # a smaller rise before the first maximum may be the start of the trial
+FLAT_SPEED_M_S = 0.25  # the CoP of a flat foot moves slower than this, over FLAT_WINDOW_S
 FLAT_WINDOW_S = 0.1
 FLAT_DURATION_S = 0.1  # and for at least this long
 
 
 @dataclass(frozen=True)
 class FootEvents:
-    """Sample indices, ascending."""
+    """Events of a foot as ascending sample indices."""
 
     heel_strikes: np.ndarray
     toe_offs: np.ndarray
@@ -30,7 +30,7 @@ class FootEvents:
 
 @dataclass(frozen=True)
 class Placement:
-    """A foot that lay flat from sample `first` until before `end`, and where its CoP was."""
+    """A foot that lay flat from sample `first` to before `end`, and its CoP."""
 
     side: int
     first: int
@@ -45,7 +45,7 @@ class Gait:
     events: tuple[FootEvents, FootEvents]
     contact: np.ndarray  # (2, n) bool
     speed_m_s: float  # of the CoM from the first heel strike to the last
-    step_lengths_m: np.ndarray  # one a step: AP distance of successive placements
+    step_lengths_m: np.ndarray  # one per step: AP distance between successive placements
     step_widths_m: np.ndarray  # left minus right; below 0 the feet cross
 
     @property
@@ -101,7 +101,7 @@ def mean_speed(recording: Recording, events: tuple[FootEvents, FootEvents]) -> f
 
 
 def placements(recording: Recording) -> list[Placement]:
-    """Where the feet lay flat, in order of time."""
+    """All placements of the feet, in order of time."""
     found = []
     for side, cop_m in enumerate(recording.cop_m):
         for first, end in _runs(_flat(recording.time_s, cop_m)):
@@ -111,7 +111,7 @@ def placements(recording: Recording) -> list[Placement]:
 
 
 def step_pairs(placed: list[Placement]) -> list[tuple[Placement, Placement]]:
-    """Each step as the successive placements of opposite feet: from the one, to the other.
+    """Each step as two successive placements of opposite feet.
 
     A foot on the ground when the trial begins did not make a recorded step.
     """
@@ -127,7 +127,7 @@ def steps(placed: list[Placement]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def passing(recording: Recording, foot: Placement) -> tuple[int, float] | None:
-    """When the CoM passes a foot: the first sample past it, and the time between it and the last.
+    """When the CoM passes a foot: the first sample past it, and the interpolated time.
 
     None if the trial begins later or ends before.
     """
@@ -150,7 +150,7 @@ def _between_events(samples: int, foot: FootEvents) -> np.ndarray:
 
 
 def _peaks(signal_m: np.ndarray) -> np.ndarray:
-    """Maxima from which the signal falls by REVERSAL_M and to which it rose by as much.
+    """Maxima with a rise before and a fall after of at least REVERSAL_M.
 
     A trial may begin late in a swing, so FIRST_RISE_M is enough for the first. Missing samples are
     skipped.
@@ -171,7 +171,9 @@ def _peaks(signal_m: np.ndarray) -> np.ndarray:
 
 
 def _flat(time_s: np.ndarray, cop_m: np.ndarray) -> np.ndarray:
-    """Whether a foot's CoP is measured and hardly moves, seen over FLAT_WINDOW_S or two samples."""
+    """Whether a foot's CoP is measured and hardly moves over FLAT_WINDOW_S, or two samples if
+    longer.
+    """
     index = np.arange(len(time_s))
     half_s = FLAT_WINDOW_S / 2 + 1e-9
     first = np.minimum(np.searchsorted(time_s, time_s - half_s), np.maximum(index - 1, 0))

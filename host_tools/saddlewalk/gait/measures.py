@@ -1,4 +1,4 @@
-"""Measures of a recorded walk, step by step, to which the gait model is fitted."""
+"""Measures of a recorded walk, step by step, for fitting the gait model."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ from saddlewalk.gait.recording import Recording
 from saddlewalk.gait.steadiness import unsteady
 from saddlewalk.gait.step_curves import LONGEST_STEP_S, StepCurve, step_curves
 
-# Means of a walking person, from a child of two to the tallest adult.
+# Range of means in walking people, from a child of two to the tallest adult.
 HUMAN = {
     "walking speed": (0.1, 3.0, "m/s"),
     "step length": (0.1, 1.3, "m"),
@@ -35,7 +35,7 @@ HEEL_HEIGHT_M = (-0.03, 0.15)  # of a heel marker while the foot lies flat
 
 @dataclass(frozen=True)
 class WalkMeasures:
-    """One recording. Arrays have one value per step and are empty if not measured."""
+    """Measures of one recording. Arrays have one value per step; empty: not measured."""
 
     source: str
     speed_m_s: float
@@ -43,15 +43,17 @@ class WalkMeasures:
     length_m: np.ndarray  # between placements
     width_m: np.ndarray  # between placements, left minus right
     vertical_m: np.ndarray  # peak to peak from heel strike to heel strike
-    lateral_m: np.ndarray  # of the sway, as far as it is largest beside the stance foot
+    lateral_m: np.ndarray  # amplitude of the sway in the plan's phase
     com_top_m: np.ndarray  # greatest height
-    half_foot_m: np.ndarray  # one a placement: heel to middle of the metatarsus, halved
+    half_foot_m: (
+        np.ndarray
+    )  # one per placement: half the distance from heel to middle of the metatarsus
     missing: dict[str, str]  # quantity -> why it could not be measured
     curves: list[StepCurve]  # steps from passing one foot to passing the next
 
 
 def measure(recording: Recording) -> WalkMeasures:
-    """Raises UserError if it is not a walk, or for a mean that is impossible for humans."""
+    """Raises UserError if it is not a walk, or if a mean is impossible for humans."""
     events = (foot_events(recording, 0), foot_events(recording, 1))
     placed = placements(recording)
     pairs = step_pairs(placed)
@@ -78,8 +80,8 @@ def measure(recording: Recording) -> WalkMeasures:
     return measures
 
 
-def refuse(source: str, quantity: str, value: float) -> None:
-    """Raise UserError unless the value is one of a human walk."""
+def check_human_range(source: str, quantity: str, value: float) -> None:
+    """Raise UserError for a value that is impossible for human gait."""
     problem = out_of_range(quantity, value)
     if problem:
         raise UserError(f"{source}: {problem}")
@@ -95,7 +97,7 @@ def out_of_range(quantity: str, value: float) -> str:
             f"step width {value:.4g} m: left and right seem swapped; exchange the names of the "
             "feet, or the sign of y, which points to the left"
         )
-    return f"{quantity} {value:.4g} {unit} is not human: {low:g} to {high:g} {unit}"
+    return f"{quantity} {value:.4g} {unit} is not a person's: {low:g} to {high:g} {unit}"
 
 
 def implausible(recording: Recording, gait: Gait) -> list[str]:
@@ -132,15 +134,15 @@ def _reject_implausible(measures: WalkMeasures, reasons: list[str]) -> None:
         ("half the foot", measures.half_foot_m),
     ):
         if len(values):
-            refuse(measures.source, quantity, float(np.mean(values)))
+            check_human_range(measures.source, quantity, float(np.mean(values)))
 
 
 def _missing(recording: Recording, placed: bool, high: bool, grounded: bool) -> dict[str, str]:
-    """Quantity -> reason, but for the sway."""
-    step = "no step from heel strike to heel strike with the CoM seen all the way"
+    """Quantity -> why it is missing, except for the sway."""
+    step = "no step from heel strike to heel strike with the CoM visible throughout"
     flat = "no two successive feet lay flat"
     off_ground = "the heels do not stand at z = 0"
-    toes = "not both toes were seen" if not _both_seen(recording.toe_m) else None
+    toes = "one or both toes were never visible" if not _both_seen(recording.toe_m) else None
     reasons = {
         "step length": None if placed else toes or flat,
         "step width": None if placed else toes or flat,
@@ -166,7 +168,7 @@ def _one_point(recording: Recording) -> str | None:
 def _strikes_in_turn(
     recording: Recording, events: tuple[FootEvents, FootEvents]
 ) -> list[list[int]]:
-    """Samples of heel strikes, left and right in turn; a new run where one was not seen."""
+    """Samples of alternating heel strikes; a new run begins where one was missed."""
     runs: list[list[int]] = []
     last = None
     strikes = [(int(i), side) for side in (0, 1) for i in events[side].heel_strikes]
@@ -187,7 +189,7 @@ def _width_m(stance: Placement, to: Placement) -> float:
 
 
 def _sways(recording: Recording, placed: list[Placement]) -> tuple[np.ndarray, dict[str, str]]:
-    """One for each stride from passing a foot to passing it again, or why there is none.
+    """The sway of each stride, from passing a foot to passing it again, or why there is none.
 
     Least squares in the plan's phase: people sway farthest up to a tenth of a stride before or
     after they pass the foot, which the plan does not.
@@ -203,16 +205,18 @@ def _sways(recording: Recording, placed: list[Placement]) -> tuple[np.ndarray, d
             share = (recording.time_s[first:end] - start_s) / (end_s - start_s)
             sways_m.append(_cosine_m(share, y_m) * (1 if stance.side == 0 else -1))
     if not sways_m:
-        why = "no stride from passing a foot to passing it again with the CoM seen all the way"
+        why = "no stride from passing a foot to passing it again with the CoM visible throughout"
     elif np.mean(sways_m) < HUMAN["lateral amplitude"][0]:
-        why = "the CoM is not nearer to the foot that it passes than before and after"
+        why = "the CoM is not nearest to the foot when it passes it"
     else:
         return np.array(sways_m), {}
     return np.array([]), {"lateral amplitude": why}
 
 
 def _cosine_m(share: np.ndarray, y_m: np.ndarray) -> float:
-    """Of one period about its mean, without the part that is odd about the middle (drift)."""
+    """Amplitude of the cosine over one period, without drift (the part that is odd about the
+    middle).
+    """
     shapes = np.stack([np.cos(2 * np.pi * share), np.ones_like(share)], axis=1)
     return float(np.linalg.lstsq(shapes, y_m)[0][0])
 

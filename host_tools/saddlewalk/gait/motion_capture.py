@@ -24,7 +24,7 @@ POINTS = ("front", "rear", "left_heel", "left_toe", "right_heel", "right_toe")
 MAY_BE_MISSING = ("left_toe", "right_toe")
 READERS = {".c3d": read_c3d, ".trc": read_trc}
 
-# Plug-in Gait first, then the usual names of the same places. "l" and "r" are the sides.
+# Names of Plug-in Gait, then other usual ones. "l" and "r" are the sides.
 ILIAC = {
     "front": ("asi", "asis", "ias", "sias", "fwt"),
     "rear": ("psi", "psis", "ips", "sips", "bwt"),
@@ -46,16 +46,17 @@ METATARSUS = (
 SIDE_FIRST = re.compile(r"(?P<side>left|right)(?P<place>.+)")
 SIDE_LAST = re.compile(r"(?![lr][._ -])(?P<place>.+)[._ -](?P<side>l|r|left|right)")
 
-WALKED_M = 1.0  # a shorter path: a treadmill, or no walk
+WALKED_M = 1.0  # a shorter path means a treadmill, or no walk
 BELT_WINDOW_S = 0.1
 SLOWEST_BELT_M_S = 0.1
-PELVIS_M = (0.25, 1.5)  # above the heels, from a child of two to the tallest adult
+PELVIS_M = (0.25, 1.5)  # pelvis above the heels, from a child of two to the tallest adult
 
 Markers = Mapping[str, Sequence[str]]  # point of POINTS -> markers whose mean it is
 
 
 def load_walk(source: str, markers: Markers | None = None) -> Recording:
-    """A trial from .c3d, .trc or, any other name, CSV. `markers` goes before the built-in names.
+    """A trial from a .c3d or .trc file, else CSV. `markers` takes precedence over the built-in
+    names.
 
     Raises UserError naming the file and what is wrong in it.
     """
@@ -76,7 +77,7 @@ def load_walk(source: str, markers: Markers | None = None) -> Recording:
 
 
 def read_markers(file: str | None) -> Markers:
-    """The mapping file, if there is one: TOML with a list of marker names for any of POINTS."""
+    """The mapping file, if given: TOML with a list of marker names for any of POINTS."""
     if file is None:
         return {}
     path = Path(file)
@@ -90,7 +91,7 @@ def read_markers(file: str | None) -> Markers:
 
 
 def _points(source: str, capture: Capture, markers: Markers) -> tuple[dict[str, np.ndarray], int]:
-    """(n, 3) of each point of POINTS, NaN for one that may be missing and is; gaps filled."""
+    """Each of POINTS as (n, 3) with gaps filled; all NaN for an optional point without markers."""
     by_name: dict[str, list[str]] = {}
     for name in capture.markers:
         for key in {_plain(name), _full(name)}:
@@ -112,7 +113,7 @@ def _points(source: str, capture: Capture, markers: Markers) -> tuple[dict[str, 
 def _choose(
     source: str, point: str, capture: Capture, markers: Markers, by_name: Mapping[str, list[str]]
 ) -> list[str]:
-    """Names in the file of the markers whose mean is the point; none if it may be missing."""
+    """The file's markers whose mean is the point; empty for a missing optional point."""
     given = point in markers
     asked = [tuple(markers[point])] if given else list(_usual_names(point))
     there = [
@@ -134,7 +135,7 @@ def _choose(
     for names in chosen:
         if len(names) > 1:
             raise UserError(
-                f"{source}: {' and '.join(names)} may each be {point}: name one in --markers"
+                f"{source}: {' and '.join(names)} could each be {point}: name one in --markers"
             )
     return [names[0] for names in chosen]
 
@@ -156,7 +157,7 @@ def _full(name: str) -> str:
 
 
 def _plain(name: str) -> str:
-    """One without the subject before it either, its side in front: Ann:Heel_Left -> lheel."""
+    """A marker's name without the subject, with its side in front: Ann:Heel_Left -> lheel."""
     words = name.rpartition(":")[2].lower().removesuffix("_study")  # of OpenCap
     for pattern in (SIDE_FIRST, SIDE_LAST):
         if match := pattern.fullmatch(words):
@@ -165,7 +166,7 @@ def _plain(name: str) -> str:
 
 
 def _likely_unit(source: str, points: dict[str, np.ndarray]) -> str:
-    """The unit in which the pelvis is as high above the heels as a person's."""
+    """The unit that gives a person's height of the pelvis above the heels."""
     pelvis = (points["front"] + points["rear"]) / 2
     above = np.concatenate([pelvis - points[f"{side}_heel"] for side in ("left", "right")])
     above = above[np.isfinite(above).all(axis=1)]
@@ -207,8 +208,8 @@ def _in_task_frame(
 def _axes(source: str, com_m: np.ndarray, heel_m: np.ndarray, toe_m: np.ndarray) -> np.ndarray:
     """(3, 3), rows forward, left, up in the laboratory's axes.
 
-    Up is the axis along which the pelvis is above the heels. Forward is the way that the pelvis
-    goes or, on a treadmill, that the feet point.
+    Up is the axis along which the pelvis is above the heels. Forward is the direction in which the
+    pelvis moves or, on a treadmill, in which the feet point.
     """
     above_m = (com_m - heel_m)[np.isfinite(com_m - heel_m).all(axis=2)]
     if not len(above_m):
@@ -223,7 +224,7 @@ def _axes(source: str, com_m: np.ndarray, heel_m: np.ndarray, toe_m: np.ndarray)
         forward = _horizontal(feet_m.mean(axis=0), up) if len(feet_m) else np.zeros(3)
     if not np.linalg.norm(forward) > 0:
         raise UserError(
-            f"{source}: the forward direction is unknown: the pelvis stays and no toe is visible"
+            f"{source}: forward is unknown: the pelvis does not move and no toe is visible"
         )
     forward /= np.linalg.norm(forward)
     return np.stack([forward, np.cross(up, forward), up])
@@ -234,7 +235,7 @@ def _horizontal(vector: np.ndarray, up: np.ndarray) -> np.ndarray:
 
 
 def _belt_speed(time_s: np.ndarray, heel_x_m: np.ndarray) -> float:
-    """The usual speed of the foot that moves back fastest; 0 over ground."""
+    """The belt's speed: that of the foot that moves back fastest, in the median; 0 over ground."""
     step = max(1, math.floor(BELT_WINDOW_S / float(np.median(np.diff(time_s)))))
     back_m_s = -(heel_x_m[:, step:] - heel_x_m[:, :-step]) / (time_s[step:] - time_s[:-step])
     both = back_m_s[:, np.isfinite(back_m_s).all(axis=0)]

@@ -1,4 +1,4 @@
-"""A recording played to the firmware over CAN as a live wearer would send it, and its answers."""
+"""Sends a recording to the firmware over CAN as a live wearer would, and receives its answers."""
 
 import contextlib
 import math
@@ -19,9 +19,8 @@ ANSWER_TIMEOUT_S = 2.0
 
 
 def states_at_ticks(recording: Recording, contact: np.ndarray) -> Iterator[State]:
-    """Every TICK_S from the start of the trial, at seconds since then.
-
-    What the recording does not hold within half a tick was not measured.
+    """The state at every tick from the start of the trial. Without a sample within half a tick it
+    was not measured.
     """
     since_start_s = recording.time_s - recording.time_s[0]
     for tick in range(math.floor(recording.duration_s / TICK_S + 1e-9) + 1):
@@ -32,7 +31,7 @@ def states_at_ticks(recording: Recording, contact: np.ndarray) -> Iterator[State
 
 
 def measurements(states: Iterable[State]) -> Iterator[tuple[float, Messages]]:
-    """(time, the messages of one set). NaN is sent as not available, a contact then as none.
+    """(time, messages of one set). NaN is sent as not available, with no contact.
 
     The wearer follows no plan, so the command is to stand.
     """
@@ -63,7 +62,7 @@ def _foot(state: State, side: str) -> dict[str, float]:
 def play_lockstep(
     bus: can.BusABC, sets: Iterator[tuple[float, Messages]]
 ) -> Iterator[tuple[float, Signals]]:
-    """Send each set once the one before is answered; yields (time of the set, its scores).
+    """Send each set when the previous one is answered; yields (time of the set, its scores).
 
     Raises UserError when no answer comes.
     """
@@ -74,7 +73,7 @@ def play_lockstep(
         if messages is None:
             raise UserError(
                 f"the firmware did not answer the measurements at {time_s:.2f} s in "
-                f"{ANSWER_TIMEOUT_S:g} s: {reader.receiver.accepted} frames came whole, "
+                f"{ANSWER_TIMEOUT_S:g} s: {reader.receiver.accepted} frames were received, "
                 f"{reader.receiver.rejected} were rejected"
             )
         yield time_s, scores_of(messages)
@@ -83,7 +82,7 @@ def play_lockstep(
 def play_realtime(
     bus: can.BusABC, sets: Iterator[tuple[float, Messages]]
 ) -> Iterator[tuple[float, Signals]]:
-    """Send each set when it is due; yields (time of the latest set, scores as they come)."""
+    """Send each set when it is due; yields (time of the latest set, scores) as received."""
     sender, reader = Sender(), TickReader()
     start_s = time.monotonic()
     for time_s, measured in sets:
@@ -94,7 +93,7 @@ def play_realtime(
 
 
 def _send(bus: can.BusABC, sender: Sender, messages: Messages) -> None:
-    """A frame that the bus has no room for is lost; the firmware sees that by its age."""
+    """Send frames. If the bus has no room a frame is lost; the firmware sees its age."""
     for name, signals in messages.items():
         with contextlib.suppress(can.CanOperationError):
             bus.send(sender.frame(name, **signals))

@@ -22,7 +22,7 @@ COLUMNS = ("t", *(f"{point}_{axis}" for point in POINTS for axis in AXES))
 class Recording:
     """One trial of n samples; index 0 of a pair of feet is the left. NaN: not measured."""
 
-    source: str  # what it is and whom to credit, one line
+    source: str  # description and credit, in one line
     time_s: np.ndarray  # (n,), finite and increasing
     com_m: np.ndarray  # (n, 3)
     heel_m: np.ndarray  # (2, n, 3)
@@ -35,7 +35,7 @@ class Recording:
 
     @cached_property
     def com_velocity_m_s(self) -> np.ndarray:
-        """(n, 3) by central differences; NaN where a sample that it needs is missing."""
+        """(n, 3) by central differences; NaN where a sample is missing."""
         return np.gradient(self.com_m, self.time_s, axis=0)
 
     @property

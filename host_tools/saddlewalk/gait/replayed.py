@@ -26,7 +26,7 @@ def score_row(time_s: float, scores: dict[str, float]) -> list[Cell]:
 
 
 def report(recording: Recording, gait: Gait, rows: list[list[Cell]]) -> list[str]:
-    """Lines `name value unit`: the walk from the markers, the rest from the firmware's scores."""
+    """Lines of `name value unit`: the walk's from the markers, the rest from the firmware's scores."""
     numbers = np.array([row[: len(NUMBER_COLUMNS)] for row in rows])
     columns = dict(zip(NUMBER_COLUMNS, numbers.T, strict=True))
     scored = np.isfinite(columns["mos_com_m"])
@@ -56,6 +56,6 @@ def _least(values: np.ndarray) -> float:
 
 
 def _share_positive(values: np.ndarray) -> float:
-    """Percent of the values that are there; NaN if none is."""
+    """Percentage of the known values that are positive; NaN without any."""
     there = values[values == values]
     return 100.0 * float((there > 0).mean()) if len(there) else math.nan

@@ -10,11 +10,11 @@ from saddlewalk.gait.recording import Recording
 from saddlewalk.gait.states import state_at
 from saddlewalk.recorded_states import measurement_of, recording_core
 
-SHORTEST_S = 1.0  # of a usable recording: about two steps
+SHORTEST_S = 1.0  # shortest usable recording: about two steps
 
 
 def learned_ripple(recording: Recording) -> float:
-    """saddle_learned_walk_t.ripple at the end of the recording; NaN of one that is too short."""
+    """saddle_learned_walk_t.ripple at the end of the recording; NaN if that is too short."""
     since_s = recording.time_s - recording.time_s[0]
     if since_s[-1] < SHORTEST_S:
         return math.nan

@@ -1,4 +1,4 @@
-"""Recorded walks that anyone can have: two trials that the PyPI package gaitkit ships as data.
+"""Freely available recorded walks: two trials in the PyPI package gaitkit.
 
 They hold hips, heels and toes as 3D points, in millimetres and in the axes of each laboratory. The
 CoM is taken midway between the hips, which is the whole model: it moves like the CoM in the
@@ -34,7 +34,7 @@ SAMPLES = {
 
 
 def load_sample(name: str) -> Recording:
-    """The recorded person `name` of SAMPLES. Raises UserError with the remedy without gaitkit."""
+    """The recorded person `name` of SAMPLES. Raises UserError if gaitkit is not installed."""
     sample = SAMPLES[name]
     try:
         package = distribution("gaitkit")

@@ -1,4 +1,4 @@
-"""A recorded walker as states, one a row, from whatever recorded it."""
+"""A recorded walker as states, one per row, from any supported recording."""
 
 import itertools
 import math
@@ -21,7 +21,7 @@ State = Mapping[str, float]  # by STATE_COLUMNS; NaN: not measured
 LONGEST_S = 1e9
 GROUNDED_M = 1e-6  # a planned foot rests at 0 and flies above
 PLAN_COLUMNS = (*STATE_COLUMNS[:-2], "left_z_m", "right_z_m")  # of saddlewalk plan
-DEMO_COLUMNS = tuple(  # of a demo's walk.csv: where the wearer truly was
+DEMO_COLUMNS = tuple(  # in a demo's walk.csv: the wearer's true state
     name if name == "t_s" or name.endswith("contact") else f"true_{name}" for name in STATE_COLUMNS
 )
 LAYOUTS = (STATE_COLUMNS, PLAN_COLUMNS, DEMO_COLUMNS, COLUMNS)
@@ -56,7 +56,7 @@ def read_measurements(
 def _recorded(
     recording: Recording, note: Callable[[str], None]
 ) -> Iterator[tuple[float, Measurement]]:
-    """Of each sample."""
+    """(time, measurement) of each sample."""
     gait = analyse(recording)
     for line in implausible(recording, gait):
         note(line)

@@ -1,4 +1,4 @@
-"""Whether a recording is one steady straight walk, which is what the gait model is fitted to.
+"""Checks that a recording is one steady straight walk, as the gait model's fit needs.
 
 Limits leave room for children, patients and short trials. Sixteen recorded walks of adults and
 children, over ground and on treadmills, one ending in a turn on the spot, have (2026): step lengths
@@ -17,12 +17,12 @@ from saddlewalk.gait.recording import Recording
 LENGTH_SCATTER = 0.5  # standard deviation of the step lengths, of their mean
 WIDTH_SCATTER_M = 0.16
 SPEED_SCATTER = 0.35  # of the strides, of their mean
-CHORD_M = 1.0  # the path's direction is that of its chords, longer than a stride's sway is wide
+CHORD_M = 1.0  # the path's direction is measured on chords longer than the sway of a stride
 TURN_DEG = 30.0
-AIRBORNE_M = 0.06  # both feet higher than where they stand
+AIRBORNE_M = 0.06  # both feet this much above their standing height
 AIRBORNE_S = 0.05
-ASKEW_DEG = 60.0  # of the feet that lie flat, in the median, from the way that is walked
-SAMPLES_TO_STAND = 5.0  # percent of the samples: the lowest of a foot, at which it stands
+ASKEW_DEG = 60.0  # median angle of flat feet to the direction of walking
+SAMPLES_TO_STAND = 5.0  # percentile of a foot's height that counts as its standing height
 FEWEST = 2
 
 
@@ -40,7 +40,9 @@ def unsteady(
 
 
 def _airborne(recording: Recording) -> Iterator[str]:
-    """Without toes a heel that rises at push-off would look like a foot in the air."""
+    """Time with both feet in the air. Needs toes: a rising heel alone would look like a foot in the
+    air.
+    """
     lowest_m = np.minimum(recording.heel_m[..., 2], recording.toe_m[..., 2])
     known = np.isfinite(lowest_m).all(axis=0)
     if not known.any():
@@ -56,7 +58,7 @@ def _airborne(recording: Recording) -> Iterator[str]:
 
 
 def _turning(recording: Recording) -> Iterator[str]:
-    """Chords of CHORD_M of the CoM's path; a shorter path has no direction."""
+    """Turn of the CoM's path, measured on chords of CHORD_M; a shorter path has no direction."""
     path_m = recording.com_m[np.isfinite(recording.com_m[:, :2]).all(axis=1), :2]
     headings_rad, end = [], 0
     for start in range(len(path_m)):
@@ -73,7 +75,7 @@ def _turning(recording: Recording) -> Iterator[str]:
 
 
 def _askew(recording: Recording, placed: list[Placement]) -> Iterator[str]:
-    """The walk goes along x. A foot with one point has no direction."""
+    """Angle of the feet to x, the direction of walking. A foot with one point has no direction."""
     feet_m = np.array(
         [
             np.median((recording.toe_m - recording.heel_m)[p.side, p.first : p.end, :2], axis=0)

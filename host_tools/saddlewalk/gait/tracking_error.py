@@ -1,8 +1,8 @@
 """Tracking error between the planner's steady walk and a recorded one.
 
 The plan starts as the core does, at the foot via point: at every instant at which the recorded CoM
-passes a foot that lies flat, the plan of the recording's mean speed is laid there, over that foot
-and the line midway between the feet, and compared until the CoM passes the next foot.
+passes a foot that lies flat, the plan at the recording's mean speed is aligned with that foot and
+the line midway between the feet, and compared until the CoM passes the next foot.
 """
 
 import math
@@ -21,14 +21,14 @@ PLAN_STEP_S = 0.005
 
 @dataclass(frozen=True)
 class Deviation:
-    """RMS of recorded minus planned over all steps; NaN where nothing can be compared."""
+    """RMS of recorded minus planned, over all steps; NaN if nothing can be compared."""
 
     steps: int
     com_y_m: float
     com_z_m: float
     com_z_shape_m: float  # without the mean difference in height
     swing_x_m: float  # of the swing foot from the stance foot, over the swing
-    landing_m: float  # where it then lies
+    landing_m: float  # position of the landed foot
     heel_strike_s: float
     limited: bool  # the speed is not feasible for this configuration, and the plan is slower
 
@@ -43,7 +43,7 @@ class PlannedStep:
 
 
 class SteadyPlan:
-    """Some strides of the core at one speed, from a left foot via point."""
+    """Some strides planned by the core at one speed, from a left foot via point."""
 
     def __init__(self, config: Any, speed_m_s: float, hs_angle_deg: float) -> None:
         outputs = walk(Core(config), speed_m_s, hs_angle_deg, PLAN_STEP_S)
@@ -60,7 +60,7 @@ class SteadyPlan:
         self._via_s = np.interp([0, math.pi, 2 * math.pi], theta_rad, self._time_s)
 
     def heel_strike_s(self, side: int) -> float:
-        """From passing the foot `side` to the heel strike of the other."""
+        """Time from passing the foot `side` to the other foot's heel strike."""
         index = np.searchsorted(self._time_s, self._via_s[side])
         return float(self._strike_s[index] - self._via_s[side])
 

@@ -30,7 +30,9 @@ def read_trc(path: Path) -> Capture:
     if len(backwards):
         raise UserError(f"{path}: frame {backwards[0] + 2}: the time must be later than before")
     points = rows[:, 1:].reshape(len(rows), len(names), 3)
-    points[~points.any(axis=2)] = math.nan  # some write a marker that was not seen as zeros
+    points[~points.any(axis=2)] = (
+        math.nan
+    )  # some programs write zeros for a marker that was not visible
     return Capture(
         time_s=rows[:, 0],
         markers={name: points[:, i] for i, name in enumerate(names)},
@@ -39,7 +41,7 @@ def read_trc(path: Path) -> Capture:
 
 
 def _row(path: Path, line: int, text: str, markers: int) -> list[float]:
-    """Time and coordinates; an empty cell is a marker that was not seen."""
+    """Time and coordinates of a frame; an empty cell is a marker that was not visible."""
     cells = text.split("\t")[1:]
     cells += [""] * (1 + 3 * markers - len(cells))
     try:

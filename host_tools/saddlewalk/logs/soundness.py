@@ -47,14 +47,14 @@ def _standing(exoskeleton: Exoskeleton) -> Check:
 def transport_checks(exoskeleton: Exoskeleton, recorder: Recorder) -> list[Check]:
     """Checks of frames and ticks, and of their records."""
     health = exoskeleton.health
-    late, refused = int(health["LATE_TICKS"]), int(health["REJECTED_FRAMES"])
+    late, rejected_by_firmware = int(health["LATE_TICKS"]), int(health["REJECTED_FRAMES"])
     rejected = exoskeleton.reader.receiver.rejected
     ticks = exoskeleton.ticks
     frames = sum(1 for _ in CanLog(recorder.can_path))
     return [
         (
-            rejected == refused == 0,
-            f"{rejected} frames rejected by the wearer, {refused} by the firmware",
+            rejected == rejected_by_firmware == 0,
+            f"{rejected} frames rejected by the wearer, {rejected_by_firmware} by the firmware",
         ),
         (late <= LATE_SHARE_MAX * ticks, f"{late} of {ticks} ticks late"),
         (recorder.rows == ticks > 0, f"{recorder.rows} rows of CSV"),

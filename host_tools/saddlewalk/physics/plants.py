@@ -63,7 +63,7 @@ POINT_MASS = PlantChoice()
 
 
 def chosen_plant(args: argparse.Namespace) -> PlantChoice:
-    """Of --plant and --body. Raises UserError if it cannot be had."""
+    """The choice of --plant and --body. Raises UserError if it is not possible."""
     if args.plant != MUJOCO:
         if args.body is not None:
             raise UserError(f"--body {args.body}: only with --plant {MUJOCO}")

@@ -20,12 +20,12 @@ LATERAL_M = 0.26  # shown to each side
 
 
 def draw_schedule(path: str, changes: Sequence[SpeedChange], walked: Sequence[Instant]) -> None:
-    """Draw to a file whose suffix names the format, PNG without one."""
+    """Draw to a file whose suffix names the format; PNG without a suffix."""
     figure = Figure(figsize=(12, 8), dpi=100, layout="constrained")
     speed, above, height = figure.subplots(3, 1, height_ratios=(1, 1.25, 1))
     time_s = np.array([instant.t_s for instant in walked])
     com_m = np.array([_com_m(instant) for instant in walked])
-    figure.suptitle("A walk as it is planned: start, change of speed, stop")
+    figure.suptitle("A planned walk: start, change of speed, stop")
     _draw_speed(speed, changes, walked, time_s)
     _draw_above(above, walked, com_m)
     height.plot(time_s, com_m[:, 2], color=BLUE, lw=1.6)
@@ -77,7 +77,7 @@ def _draw_above(axes: Axes, walked: Sequence[Instant], com_m: np.ndarray) -> Non
 
 
 def _footholds_m(walked: Sequence[Instant], index: int) -> set[tuple[float, float]]:
-    """Where a foot carries, to the millimetre."""
+    """Footholds, rounded to a millimetre."""
     places = set()
     for instant in walked:
         plan = instant.output.plan

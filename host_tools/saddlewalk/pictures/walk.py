@@ -1,4 +1,4 @@
-"""The picture of a recorded walk: from above, whole and closely; speed, height, scores, level."""
+"""The picture of a recorded walk: from above, whole and in detail; speed, height, scores, level."""
 
 import csv
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ matplotlib.use("Agg")
 
 # Okabe and Ito's colours, which colour-blind people can distinguish; line styles differ as well.
 BLUE, SKY, GREEN, ORANGE, RED, PINK = "#0072B2 #56B4E9 #009E73 #E69F00 #D55E00 #CC79A7".split()
-BEFORE_S, AFTER_S = 1.2, 3.0  # the part of the walk shown closely, about the first push
+BEFORE_S, AFTER_S = 1.2, 3.0  # the part shown in detail, around the first push
 LYING_S = 0.5  # shown after a fall
 FOOT_M = (0.26, 0.09)
 MARGIN_SHOWN_M = -0.8  # during a fall it goes far below
@@ -37,7 +37,7 @@ LANES: dict[str, dict[str, Any]] = {
     "caution": {"facecolor": ORANGE, "hatch": "///"},
     "unstable": {"facecolor": RED, "hatch": "xxx"},
 }
-# Not meaningful for a wearer on the ground.
+# Columns without a meaning for a wearer on the ground.
 OF_A_POSTURE = (
     *("s_pend", "s_jump", "s_sw", "level", "margin", "caution_below"),
     *("true_com_vx_m_s", "true_com_z_m"),
@@ -66,7 +66,7 @@ def read_walk(path: Path) -> Columns:
 
 
 def until_fall(walk: Columns, fell_s: float | None) -> Columns:
-    """Without the numbers of a posture after a fall."""
+    """The walk without numbers that have no meaning after a fall."""
     if fell_s is None:
         return walk
     upright = walk["t_s"] <= fell_s
@@ -80,7 +80,7 @@ def draw_walk(
     config: Any,
     fell_s: float | None = None,
 ) -> None:
-    """Draw walk.csv, whole or as far as it goes. config: saddle_config_t of the walker."""
+    """Draw walk.csv, which may be incomplete. config: the walker's saddle_config_t."""
     figure_of(read_walk(csv_path), pushes, config, fell_s).savefig(png_path)
 
 
@@ -125,7 +125,7 @@ def _footprint(colour: str) -> dict[str, Any]:
 
 
 def _draw_whole(axes: Axes, walk: Columns, closely: Columns) -> None:
-    """The whole walk from above, and which part of it is shown closely."""
+    """The whole walk from above, with the part that is shown in detail marked."""
     for side, colour in FEET:
         _draw_stood(axes, walk, "true", side, walk[f"{side}_contact"] > 0, _footprint(colour))
     axes.plot(walk["true_com_x_m"], walk["true_com_y_m"], color=BLUE, lw=1.2)
@@ -137,7 +137,7 @@ def _draw_whole(axes: Axes, walk: Columns, closely: Columns) -> None:
 
 
 def shown(time_s: np.ndarray, pushes: Sequence[Push], fell_s: float | None) -> np.ndarray:
-    """About the first push, or the middle, and to the fall if there was one."""
+    """The time shown in detail: around the first push or the middle, up to a fall."""
     centre_s = pushes[0].time_s if pushes else (time_s[-1] + BEFORE_S - AFTER_S) / 2
     from_s, to_s = centre_s - BEFORE_S, centre_s + AFTER_S
     if fell_s is not None:
@@ -176,7 +176,7 @@ def _bos(walk: Columns, index: int, config: Any) -> np.ndarray:
 
 
 def _draw_feet(axes: Axes, walk: Columns, planned: np.ndarray, side: str, colour: str) -> None:
-    """Footprints where the foot stood, full, and where it was planned to stand, outlined."""
+    """Footprints: filled where the foot stood, outlined where it was planned."""
     outline = {"fill": False, "ec": "black", "ls": "--", "lw": 0.8}
     _draw_stood(axes, walk, "true", side, walk[f"{side}_contact"] > 0, _footprint(colour))
     _draw_stood(axes, walk, "plan", side, planned, outline)
@@ -192,7 +192,7 @@ def _draw_stood(
 
 
 def _draw_fall(views: Sequence[Axes], walk: Columns) -> None:
-    """Where the CoM came down, and stays."""
+    """Mark where the CoM came down."""
     at = walk["true_com_x_m"][-1], walk["true_com_y_m"][-1]
     for axes in views:
         axes.plot(*at, "X", color="black", ms=11, mec="white", zorder=5)
@@ -200,14 +200,14 @@ def _draw_fall(views: Sequence[Axes], walk: Columns) -> None:
 
 
 def lateral_limits(walk: Columns) -> tuple[float, float]:
-    """With room for the feet, and for a CoM that falls away from them."""
+    """Lateral limits with room for the feet and for a CoM that falls away from them."""
     names = ("true_com_y_m", *(f"true_{side}_y_m" for side, _ in FEET))
     lateral = np.concatenate([walk[name] for name in names])
     return min(lateral.min() - 0.15, -0.5), max(lateral.max() + 0.15, 0.5)
 
 
 def draw_arrow(axes: Axes, text: str, tail: complex, at: complex) -> None:
-    """Of a push, x forward + 1j * y to the left."""
+    """The arrow of a push; complex numbers are x forward + 1j * y to the left."""
     axes.annotate(
         text,
         xy=(at.real, at.imag),
@@ -237,7 +237,7 @@ def _draw_height(axes: Axes, walk: Columns) -> None:
 def _draw_lines(
     axes: Axes, walk: Columns, names: Sequence[tuple[str, str]], modes: bool = False
 ) -> None:
-    """Lines over the whole walk; modes: name the shades, which are the plan's modes."""
+    """Lines over the whole walk, shaded by the plan's modes. modes: label the shades."""
     styles = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."))
     for (name, label), (colour, style) in zip(names, styles, strict=False):
         axes.plot(walk["t_s"], walk[name], color=colour, ls=style, lw=1.6, label=label)
@@ -253,7 +253,7 @@ def _draw_lines(
 def draw_balance(
     axes: Axes, time_s: np.ndarray, margin: np.ndarray, caution_below: np.ndarray
 ) -> None:
-    """The margin that decides the level; below it the caution band, and from 0 down unstable."""
+    """The margin that decides the level, with the caution band and the unstable region below 0."""
     low, high = BALANCE_SHOWN
     band: dict[str, Any] = {"lw": 0, "zorder": 0}
     axes.fill_between(time_s, 0, caution_below, alpha=0.35, **band, **LANES["caution"])
@@ -270,7 +270,7 @@ def draw_balance(
 
 
 def _name_lowest(axes: Axes, walk: Columns) -> None:
-    """How low the margin came, and what drove it there."""
+    """Annotate the lowest margin with its driver."""
     if np.isnan(walk["margin"]).all():
         return
     index = int(np.nanargmin(walk["margin"]))

@@ -1,1 +1,1 @@
-"""Walks as they are planned, steady or by a schedule, without a wearer."""
+"""Planned walks without a wearer, steady or by a schedule."""

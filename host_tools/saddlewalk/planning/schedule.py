@@ -18,7 +18,7 @@ from saddlewalk.table import read_series
 LONGEST_S = 1e6
 _SAME_TIME_S = 1e-9
 
-Speeds = list[tuple[float, float]]  # (from this time on, s; speed, m/s, 0: stand), times from 0
+Speeds = list[tuple[float, float]]  # (start time, s, from 0; speed, m/s, 0: stand)
 Schedule = Callable[[float], Command]  # the command at a time of the walk, s
 
 
@@ -80,7 +80,7 @@ def read_schedule(source: str) -> list[SpeedChange]:
 def walk(
     core: Core, changes: list[SpeedChange], heel_strike_rad: float, dt_s: float
 ) -> Iterator[Instant]:
-    """Endless, from standing, at t = k dt; ticks in between where dt is long."""
+    """Instants from standing at t = k dt, without end; with ticks in between if dt is long."""
     starts_s = [wish.from_s for wish in changes]
     ticks_per_row = math.ceil(dt_s / TICK_S - _SAME_TIME_S)
     tick_s = dt_s / ticks_per_row
@@ -119,7 +119,7 @@ def _events(before: Any, after: Any) -> list[tuple[str, float]]:
 
 
 def _swing_foot(plan: Any) -> str | None:
-    """None while both feet carry."""
+    """The swing foot; None in double support."""
     return SIDES[1 - plan.support] if plan.step_length_m > 0 else None
 
 

@@ -18,7 +18,7 @@ COLUMNS = (
 def walk(
     core: Any, speed_m_s: float, hs_angle_deg: float, dt_s: float
 ) -> Iterator[tuple[float, Any]]:
-    """Endless (t_s, saddle_output_t) at t = k dt, ticking in between where dt is long."""
+    """(t_s, saddle_output_t) at t = k dt, without end; with ticks in between if dt is long."""
     command = Command(speed_m_s, math.radians(hs_angle_deg))
     no_measurement = Measurement()
     core.join(command)

@@ -1,1 +1,1 @@
-"""CAN and LCM: frames, messages, and the ways that they go."""
+"""CAN and LCM: frames, messages and transports."""

@@ -40,7 +40,7 @@ def write_new_key(path: Path) -> None:
 
 
 class Authenticator:
-    """Makes each COMMAND together with the COMMAND_CODE that goes before it.
+    """Makes each COMMAND and the COMMAND_CODE that precedes it.
 
     The codes are for the session in the firmware's SESSION frames: give hear() every frame that is
     received.
@@ -49,7 +49,7 @@ class Authenticator:
     def __init__(self, key: bytes) -> None:
         """key: 16 bytes, the firmware's. Raises UserError for another length."""
         if len(key) != KEY_BYTES:
-            raise UserError(f"the key of commands has {len(key)} bytes: give {KEY_BYTES}")
+            raise UserError(f"the command key has {len(key)} bytes: give {KEY_BYTES}")
         self._key = key
         self._receiver = Receiver()
         self._session: int | None = None
@@ -64,7 +64,7 @@ class Authenticator:
             self._session, self._freshness = int(accepted[1]["SESSION"]), 0
 
     def frames(self, sender: Sender, **command: float) -> list[can.Message]:
-        """COMMAND_CODE and COMMAND, to be sent in this order; none while there is no session."""
+        """COMMAND_CODE and COMMAND, to be sent in this order; empty without a session."""
         if self._session is None or self._freshness == FRESHNESS_MAX:
             return []
         self._freshness += 1

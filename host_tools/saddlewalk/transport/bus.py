@@ -1,10 +1,10 @@
 """CAN for the host tools: SocketCAN where the kernel has it, else UDP multicast on loopback.
 
-The datagrams are those of python-can's `udp_multicast`, so its tools understand them; this bus adds
-what that one lacks. It stays on the loopback interface, with hop limit 0, and so needs no route and
-no root; `@INTERFACE` after the port makes it leave this machine. A node does not receive its own
-frames. Invalid datagrams are counted, not raised.
-python-can's own programs find it as `can_logger -i saddlewalk_udp`.
+The datagrams are those of python-can's `udp_multicast`, so its tools understand them; unlike it,
+this bus stays on the loopback interface, with hop limit 0, and so needs no route and no root;
+`@INTERFACE` after the port makes it leave this machine. A node does not receive its own frames.
+Invalid datagrams are counted, not raised. python-can's own programs find it as `can_logger -i
+saddlewalk_udp`.
 """
 
 import errno
@@ -36,7 +36,7 @@ _IP_MULTICAST_ALL = 49  # which Python's socket does not name
 class LoopbackUdpBus(can.BusABC):
     """CAN frames as UDP multicast datagrams on the loopback interface.
 
-    channel is "GROUP:PORT" or "GROUP:PORT@INTERFACE". `malformed` counts datagrams that were no
+    channel is "GROUP:PORT" or "GROUP:PORT@INTERFACE". `malformed` counts datagrams that are not a
     frame.
     """
 
@@ -82,7 +82,7 @@ class LoopbackUdpBus(can.BusABC):
             return None
         try:
             return unpack_message(datagram, replace={"timestamp": time.time()}, check=True)
-        except Exception:  # msgpack and python-can raise nearly every type here
+        except Exception:  # msgpack and python-can raise exceptions of many types
             self.malformed += 1
             return None
 

@@ -10,7 +10,7 @@ import lcm
 from saddlewalk import paths
 from saddlewalk.errors import UserError
 
-_LCM = Path(lcm.__file__).parents[1]  # beside which its wheel lays programs and jars
+_LCM = Path(lcm.__file__).parents[1]  # its wheel installs programs and jars relative to this folder
 
 
 def lcm_program(name: str) -> Path:

@@ -16,7 +16,7 @@ from saddlewalk.errors import UserError
 
 SYNC = bytes.fromhex("eda1da01")
 CHANNEL_MAX = 63  # bytes, as LCM has it
-DATA_MAX = 1 << 20  # of a longer event the rest is skipped; no message of ours comes near
+DATA_MAX = 1 << 20  # longer data are cut; our messages are much shorter
 BLOCK = 4 << 20
 START = 1 << 16
 _HEADER = struct.Struct(">4sQqII")
@@ -43,33 +43,33 @@ def is_lcm_log(path: Path) -> bool:
     except OSError as error:
         raise UserError(f"{path}: {error.strerror}") from error
     if not start:
-        raise UserError(f"{path} is empty: give a log with something in it")
+        raise UserError(f"{path} is empty: give a log with messages")
     return SYNC in start
 
 
 class LcmLog:
     """The events of a log, in order; iterate as often as needed.
 
-    An event counts if its lengths are possible and the next event or the end of the file follows
-    it. After bytes that are no event, reading goes on at the next one.
+    An event is valid if its lengths are possible and the next event or the end of the file follows
+    it. Other bytes are skipped up to the next event.
     """
 
     def __init__(self, path: Path) -> None:
-        """Raises UserError for what is not an LCM log, or holds not one event."""
+        """Raises UserError for a file that is not an LCM log, or has no event."""
         if not is_lcm_log(path):
             raise UserError(
                 f"{path} is not an LCM log: give one from lcm-logger or `saddlewalk demo`"
             )
         self.path = path
         self.events = 0  # read so far, as are all of these
-        self.lost = 0  # bytes that are no event
+        self.lost = 0  # bytes that are not an event
         self._first_lost = 0
         if next(iter(self), None) is None:
             raise UserError(f"{path}: none of its events can be read: {self.broken}")
 
     @property
     def broken(self) -> str:
-        """In words, what could not be read; empty: nothing."""
+        """What could not be read, as text; empty if all was read."""
         if not self.lost:
             return ""
         return (
@@ -109,7 +109,7 @@ def _event(blocks: "_Blocks", place: int) -> tuple[Event, int] | None:
     end = name_at + name_size + data_size
     if sync != SYNC or not 0 < name_size <= CHANNEL_MAX or end > blocks.size:
         return None
-    if not SYNC.startswith(blocks.peek(end, len(SYNC))):  # nothing or a cut sync word: the end
+    if not SYNC.startswith(blocks.peek(end, len(SYNC))):  # the end of the file, or a cut sync word
         return None
     body = blocks.read(name_at, name_size + min(data_size, DATA_MAX))
     channel = body[:name_size].decode(errors="backslashreplace")
@@ -117,7 +117,7 @@ def _event(blocks: "_Blocks", place: int) -> tuple[Event, int] | None:
 
 
 class _Blocks:
-    """A file's bytes by their place; of what is read in order, a block at a time is held."""
+    """Random access to a file's bytes, with one block in memory."""
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
@@ -139,7 +139,7 @@ class _Blocks:
         return os.pread(self._descriptor, size, place)
 
     def find(self, wanted: bytes, place: int) -> int:
-        """Where `wanted` comes next; the end of the file if nowhere."""
+        """The next place of `wanted`; the end of the file if there is none."""
         while place < self.size:
             at = place - self._first
             if not 0 <= at <= len(self._block) - len(wanted):

@@ -32,7 +32,7 @@ def open_lcm(url: str | None = None) -> lcm.LCM:
 
 
 def _check_log(url: str) -> None:
-    """A log that lcm will play, whose lengths it trusts, is read to its end before."""
+    """Read a log to its end before lcm plays it, since lcm trusts the lengths in it."""
     scheme, _, rest = url.partition("://")
     path, _, options = rest.partition("?")
     if scheme != "file" or "mode=w" in options:
@@ -45,9 +45,9 @@ def _check_log(url: str) -> None:
 
 
 def receive(bus: lcm.LCM, within_s: float = 0.0) -> bool:
-    """Hand one message to its subscribers if one comes in time; whether one did.
+    """Pass a message to its subscribers if one comes in time; returns whether one did.
 
-    In the place of lcm's handle_timeout(), in which Ctrl-C breaks the interpreter.
+    Replaces lcm's handle_timeout(), in which Ctrl-C breaks the interpreter.
     """
     if not select.select([bus], [], [], within_s)[0]:
         return False
@@ -56,7 +56,7 @@ def receive(bus: lcm.LCM, within_s: float = 0.0) -> bool:
 
 
 def listen(bus: lcm.LCM, for_s: float) -> None:
-    """Hand what comes to its subscribers for that long."""
+    """Pass messages to their subscribers for that long."""
     deadline_s = time.monotonic() + for_s
     while (left_s := deadline_s - time.monotonic()) > 0:
         receive(bus, left_s)

@@ -36,14 +36,14 @@ def inside() -> bool:
 
 
 def enter() -> None:
-    """Begin this program anew in a private network. Does not return."""
+    """Restart this program in a private network. Does not return."""
     os.environ[_INSIDE] = "1"
     again = [sys.executable, "-m", __name__, sys.executable, *sys.argv]
     os.execvp(_NAMESPACE[0], [*_NAMESPACE, *again])
 
 
 def bring_up(control: socket.socket, interface: bytes = b"lo", up: bool = True) -> None:
-    """Or take it down, and every route through it."""
+    """Bring an interface up, or take it down with all its routes."""
     request = struct.pack("16sh22x", interface, 0)
     flags = struct.unpack("16sh22x", fcntl.ioctl(control, _SIOCGIFFLAGS, request))[1]
     flags = flags | _IFF_UP if up else flags & ~_IFF_UP
@@ -51,7 +51,7 @@ def bring_up(control: socket.socket, interface: bytes = b"lo", up: bool = True) 
 
 
 def route_multicast(control: socket.socket, request: int = _SIOCADDRT) -> None:
-    """Give loopback the route, or take it away by SIOCDELRT.
+    """Add the route to loopback, or remove it with SIOCDELRT.
 
     The kernel's `struct rtentry`: destination, gateway, netmask, flags, device by name.
     """

@@ -22,7 +22,7 @@ _HEADER = 5  # characters of tIIIL
 class SlcanBus(can.BusABC):
     """A connected socket with a controller at the other end, which this bus closes.
 
-    `malformed` counts lines that were no classic data frame with an 11-bit identifier.
+    `malformed` counts lines that are not a classic data frame with an 11-bit identifier.
     """
 
     def __init__(self, line: socket.socket, description: str) -> None:
@@ -66,7 +66,7 @@ class SlcanBus(can.BusABC):
         return self._line.fileno()
 
     def shutdown(self) -> None:
-        """Close the channel, and wait for a while until the other side has left the line."""
+        """Close the channel, and wait for the other side to disconnect."""
         super().shutdown()
         if self._line.fileno() < 0:
             return
@@ -84,7 +84,7 @@ def text_of(frame: can.Message) -> bytes:
 
 
 def frame_of(line: bytes) -> can.Message | None:
-    """The frame of a line without its carriage return, stamped now; None: it is none."""
+    """The frame of a line without its carriage return, stamped now; None if it is not a frame."""
     try:
         identifier, length = int(line[1:4], 16), int(line[4:_HEADER])
         data = bytes.fromhex(line[_HEADER:].decode())
