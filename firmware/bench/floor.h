@@ -1,10 +1,12 @@
-/** The floor of an update: its transcendental calls and square roots alone, with their arguments. */
+/** The floor of an update: only its transcendental functions and square roots, with their
+ *  arguments. */
 #ifndef SADDLE_BENCH_FLOOR_H
 #define SADDLE_BENCH_FLOOR_H
 
 #include <stdint.h>
 
-/** In the order of the arguments. A square root within another function is part of that. */
+/** In the order of the arguments. A square root inside another function belongs to that function.
+ *  */
 enum {
     SADDLE_BENCH_SIN,
     SADDLE_BENCH_COS,
@@ -21,8 +23,8 @@ typedef struct {
     uint32_t count[7];
 } saddle_bench_calls_t;
 
-/** The calls once more; arguments: those of each function, one function after the other. Returns the
- *  sum of the results, and how many arguments were used in *used. */
+/** Repeat the calls. arguments: for one function after the other. Returns the
+ *  sum of the results; *used: number of arguments that were used. */
 float saddle_bench_floor(const saddle_bench_calls_t *calls, const float *arguments, uint32_t *used);
 
 #endif

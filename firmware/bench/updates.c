@@ -1,13 +1,13 @@
 /* saddlewalk-bench-updates: each update of each walk, and then its floor, whose calls are read from
- * standard input as saddlewalk-bench-calls prints them. Prints a line for each: walk, update, status,
- * mode, level, faults. Callgrind counts saddle_init(), saddle_bench_update() or
+ * standard input as saddlewalk-bench-calls prints them. Prints a line for each: walk, update,
+ * status, mode, level, faults. Callgrind counts saddle_init(), saddle_bench_update() or
  * saddle_bench_floor(). */
 #include "floor.h"
 #include "walks.h"
 
 #include <stdio.h>
 
-/* Far more than any update has. */
+/* Far more calls than any update makes. */
 #define CALLS_MOST 256u
 
 typedef struct {

@@ -12,7 +12,7 @@
 static const float SPEEDS_M_S[SADDLE_BENCH_WALKS] = {1.2f, 0.7f, 1.2f, 1.6f, 1.2f, 1.2f};
 static const float HEEL_STRIKE_RAD = 0.174532925f;
 
-/* The wearer stands and goes as is planned. */
+/* The wearer follows the plan exactly. */
 static saddle_measurement_t wearer(const saddle_plan_t *plan)
 {
     saddle_measurement_t measured = {.com = {.height_m = plan->com_m.z, .age_us = 5000u}};
@@ -21,7 +21,7 @@ static saddle_measurement_t wearer(const saddle_plan_t *plan)
         measured.foot[side].cop_m = (saddle_vec2_t){plan->foot_m[side].x - plan->com_m.x,
                                                     plan->foot_m[side].y - plan->com_m.y};
         measured.foot[side].contact =
-            side == (int)plan->support || plan->speed_m_s == 0.0f; /* then both feet stand */
+            side == (int)plan->support || plan->speed_m_s == 0.0f; /* both feet stand */
         measured.foot[side].age_us = 5000u;
     }
     return measured;
@@ -49,7 +49,7 @@ void saddle_bench_walk(saddle_bench_walk_t *walk, int number)
     static saddle_output_t planned;
     const saddle_config_t config = saddle_config_default(1.79f, 63.3f);
     const saddle_command_t go = {SADDLE_COMMAND_WALK, SPEEDS_M_S[number], HEEL_STRIKE_RAD};
-    saddle_context_t *model = &walk->context; /* of the wearer, until all inputs are made */
+    saddle_context_t *model = &walk->context; /* used to make the inputs, then initialised again */
     walk->scores_plan = number == SADDLE_BENCH_PLAN;
     (void)saddle_init(model, &config);
     for (uint32_t k = 0; k < SADDLE_BENCH_UPDATES; k++) {

@@ -1,4 +1,4 @@
-/** The walks that updates are measured in, tick by tick. */
+/** The walks of the benchmark, tick by tick. */
 #ifndef SADDLE_BENCH_WALKS_H
 #define SADDLE_BENCH_WALKS_H
 
@@ -14,7 +14,7 @@ enum {
     SADDLE_BENCH_MIDDLE, /**< 1.2 m/s, likewise */
     SADDLE_BENCH_FAST,   /**< 1.6 m/s, likewise */
     SADDLE_BENCH_PUSHED, /**< 1.2 m/s, then faster than planned, then beyond what a step can recover */
-    SADDLE_BENCH_INVALID, /**< 1.2 m/s, each tick with another unusable input */
+    SADDLE_BENCH_INVALID, /**< 1.2 m/s, with a different unusable input in each tick */
     SADDLE_BENCH_WALKS
 };
 

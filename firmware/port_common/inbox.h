@@ -11,9 +11,9 @@
 #include <saddlewalk/saddlewalk.h>
 #include <saddlewalk/wire.h>
 
-/** As in status_t. */
+/** Same numbers as in status_t. */
 typedef enum {
-    SADDLE_SOURCE_NONE = 0, /**< as a choice: the first that commands */
+    SADDLE_SOURCE_NONE = 0, /**< when chosen: the first source that commands */
     SADDLE_SOURCE_CAN = 1,
     SADDLE_SOURCE_LCM = 2
 } saddle_source_t;
@@ -29,11 +29,11 @@ typedef struct {
     uint8_t set_counter;
     uint32_t commands_applied;
     uint32_t commands_unusable; /**< unknown mode, non-finite number, or not a command_t */
-    uint32_t commands_ignored;  /**< of the source without authority */
-    uint32_t commands_foreign;  /**< by LCM from another machine, where that is not accepted */
+    uint32_t commands_ignored;  /**< from the source without authority */
+    uint32_t commands_foreign;  /**< by LCM from another machine, if that is not accepted */
 } saddle_inbox_t;
 
-/** Empty. chosen: see saddle_inbox_t. */
+/** Initialise it empty. chosen: see saddle_inbox_t. */
 void saddle_inbox_init(saddle_inbox_t *inbox, saddle_source_t chosen);
 
 /** Process a frame received from CAN at time_us. */
@@ -47,7 +47,7 @@ void saddle_inbox_take_command(saddle_inbox_t *inbox, saddle_source_t source,
 /** All three measurements of one instant were received since the last read. */
 bool saddle_inbox_set_complete(const saddle_inbox_t *inbox);
 
-/** The input of a tick at time_us, with the age of each part then. */
+/** The input of a tick at time_us, with the age of each part at that time. */
 const saddle_input_t *saddle_inbox_read(saddle_inbox_t *inbox, uint64_t time_us);
 
 /** If the first source that commands has authority: release it for the next one that commands.

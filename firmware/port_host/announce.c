@@ -8,7 +8,7 @@
 
 #define LINE_MAX_BYTES 400
 
-/** A pipe is ready when it has room for more than a line, so the write does not wait either. */
+/** A pipe is ready when it has room for more than a line, so the write does not block. */
 static void write_now(const char *line, size_t size)
 {
     struct pollfd standard_error = {.fd = STDERR_FILENO, .events = POLLOUT};

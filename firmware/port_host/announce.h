@@ -4,7 +4,7 @@
 
 #define SADDLE_PROGRAM "saddlewalk-host"
 
-/** One line on standard error, `saddlewalk-host: ` before it. Dropped if the
+/** Print a line on standard error, preceded by `saddlewalk-host: `. It is dropped if the
  *  reader is behind: no tick waits for it. At most 400 characters. */
 #if defined __GNUC__
 __attribute__((format(printf, 1, 2)))

@@ -97,7 +97,7 @@ void saddle_bus_send(saddle_bus_t *bus, const saddle_bus_frame_t *frame)
     }
 }
 
-/** Events of the link, as opposed to frames. */
+/** Handle events of the link, as opposed to frames. */
 static void note_link(saddle_bus_t *bus, saddle_bus_received_t received, int error)
 {
     if (received == SADDLE_BUS_OFF) {
@@ -125,7 +125,7 @@ saddle_bus_received_t saddle_bus_receive(saddle_bus_t *bus, saddle_bus_frame_t *
     }
 }
 
-/** Replaces the old bus once it is open: an interface that is back may be another one. */
+/** Replaces the old bus once it is open: an interface that came back may be a new one. */
 void saddle_bus_maintain(saddle_bus_t *bus)
 {
     saddle_bus_t fresh;

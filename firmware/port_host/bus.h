@@ -16,13 +16,13 @@
  */
 bool saddle_bus_open(saddle_bus_t *bus, const char *spec);
 
-/** Send or drop, and count which. */
+/** Send a frame, or drop and count it. */
 void saddle_bus_send(saddle_bus_t *bus, const saddle_bus_frame_t *frame);
 
 /** Receive the next frame. frame is written only with SADDLE_BUS_FRAME. */
 saddle_bus_received_t saddle_bus_receive(saddle_bus_t *bus, saddle_bus_frame_t *frame);
 
-/** Try to bring back a link that is down. For every tick. */
+/** Try to reopen a link that is down. Call it every tick. */
 void saddle_bus_maintain(saddle_bus_t *bus);
 
 void saddle_bus_close(saddle_bus_t *bus);

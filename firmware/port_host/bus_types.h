@@ -12,24 +12,24 @@ typedef struct {
     uint32_t id;
     uint8_t length; /**< at most 8 */
     uint8_t data[8];
-    uint32_t waited_us; /**< received: since it came */
+    uint32_t waited_us; /**< of a received frame: time since its reception */
 } saddle_bus_frame_t;
 
 /** saddle_bus_receive() returns one of the first three; the others are between it and the kinds. */
 typedef enum {
-    SADDLE_BUS_EMPTY, /**< nothing waits */
+    SADDLE_BUS_EMPTY, /**< no frame is waiting */
     SADDLE_BUS_FRAME,
     SADDLE_BUS_JUNK,     /**< something other than a CAN frame was read from the bus */
     SADDLE_BUS_FAILED,   /**< errno says why */
     SADDLE_BUS_OFF,      /**< the controller has left the bus */
-    SADDLE_BUS_RESTARTED /**< it is on the bus again */
+    SADDLE_BUS_RESTARTED /**< the controller is on the bus again */
 } saddle_bus_received_t;
 
 typedef enum { SADDLE_BUS_SOCKETCAN = 0, SADDLE_BUS_UDP = 1 } saddle_bus_kind_t;
 
 typedef struct {
     saddle_bus_kind_t kind;
-    int receive_fd;           /**< becomes readable when something waits */
+    int receive_fd;           /**< readable when a frame is waiting */
     int send_fd;              /**< the same one on SocketCAN */
     struct sockaddr_in group; /**< UDP: where frames are sent */
     bool on_loopback;         /**< UDP: does not leave this machine */

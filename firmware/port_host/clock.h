@@ -4,10 +4,10 @@
 
 #include <stdint.h>
 
-/** CLOCK_MONOTONIC, which is never set. */
+/** CLOCK_MONOTONIC, which nobody sets. */
 uint64_t saddle_now_us(void);
 
-/** Time since a moment of CLOCK_REALTIME that has just been; 0 if the clock was set back since. */
+/** Time since a recent instant of CLOCK_REALTIME; 0 if the clock was set back since. */
 uint32_t saddle_since_us(int64_t realtime_us);
 
 #endif

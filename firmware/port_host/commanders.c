@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-/** Of any user: neither loopback nor a CAN socket asks for rights. */
+/** Any user: neither loopback nor a CAN socket needs privileges. */
 #define THIS_MACHINE "any program on this machine"
 #define NETWORK "anyone on the network"
 

@@ -1,4 +1,4 @@
-/** Who can command this process, in words. */
+/** Who can command this process, as text. */
 #ifndef SADDLEWALK_HOST_COMMANDERS_H
 #define SADDLEWALK_HOST_COMMANDERS_H
 

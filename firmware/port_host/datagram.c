@@ -58,7 +58,7 @@ static void put_false(writer_t *writer, const char *key)
 size_t saddle_datagram_encode(const saddle_bus_frame_t *frame,
                               uint8_t datagram[SADDLE_DATAGRAM_MAX])
 {
-    static const uint8_t zero_seconds[8] = {0}; /* the receiver takes its own time */
+    static const uint8_t zero_seconds[8] = {0}; /* the receiver uses its own clock */
     writer_t writer = {.bytes = datagram};
     put_byte(&writer, FIXMAP | 11);
     put_key(&writer, "timestamp");

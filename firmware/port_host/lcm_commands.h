@@ -15,7 +15,7 @@
 #include <stdint.h>
 
 typedef enum {
-    SADDLE_LCM_EMPTY, /**< nothing waits */
+    SADDLE_LCM_EMPTY, /**< no message is waiting */
     SADDLE_LCM_COMMAND,
     SADDLE_LCM_JUNK,   /**< on the channel of commands, but no command_t */
     SADDLE_LCM_FOREIGN /**< a command from another machine, which does not count */
@@ -23,7 +23,7 @@ typedef enum {
 
 typedef struct {
     saddle_command_t command; /**< with SADDLE_LCM_COMMAND */
-    uint32_t waited_us;       /**< since it came; 0 with SADDLE_LCM_EMPTY */
+    uint32_t waited_us;       /**< time since reception; 0 with SADDLE_LCM_EMPTY */
     struct in_addr source;    /**< the sender's address, as the datagram says */
 } saddle_lcm_arrival_t;
 
@@ -34,7 +34,7 @@ bool saddle_lcm_commands_possible(const char *url);
  *  that is readable when a command waits; -1: errno says why not. */
 int saddle_lcm_commands_open(const char *url, bool from_network);
 
-/** Take what came next, without blocking. */
+/** Receive the next message without blocking. */
 saddle_lcm_received_t saddle_lcm_commands_receive(int fd, saddle_lcm_arrival_t *arrival);
 
 #endif

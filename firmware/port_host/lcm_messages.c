@@ -65,7 +65,7 @@ static saddlewalk_plan_t plan_message(const saddle_plan_t *plan, int64_t utime_u
     return message;
 }
 
-/** A number that is known, or NaN. */
+/** The number if it is known, else NaN. */
 static float known(bool is_known, float value)
 {
     return is_known ? value : NAN;
@@ -267,7 +267,7 @@ int saddle_lcm_encode_config(const saddle_config_t *config, uint64_t time_us, bo
     float values[CONFIG_FIELDS];
     for (size_t i = 0; i < CONFIG_FIELDS; ++i) {
         const saddle_config_field_t *field = saddle_config_field(i);
-        names[i] = (char *)field->name; /* read only: the generated type lacks the const */
+        names[i] = (char *)field->name; /* not written to: the generated type has no const */
         memcpy(&values[i], (const char *)config + field->offset, sizeof values[i]);
     }
     const saddlewalk_config_t message = {

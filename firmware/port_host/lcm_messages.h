@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** Room for the longest message, which is config_t. */
+/** Enough for the longest message, config_t. */
 enum { SADDLE_LCM_MESSAGE_MAX = 4096 };
 
 /** The messages of a tick's output. */
@@ -34,7 +34,8 @@ int saddle_lcm_encode_output(saddle_lcm_output_t part, const saddle_output_t *ou
 int saddle_lcm_encode_input(const saddle_input_t *input, int32_t tick,
                             uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
 
-/** input_t back, to the bit. False, and nothing written, unless the bytes are one, to the end. */
+/** Decode an input_t, bit for bit. False, and nothing is written, unless the bytes are exactly one.
+ *  */
 bool saddle_lcm_decode_input(const uint8_t *bytes, int size, saddle_input_t *input, int32_t *tick);
 
 /** config_t. Returns the size in bytes. */

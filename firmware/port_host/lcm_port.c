@@ -48,7 +48,7 @@ static void note_sent(saddle_lcm_port_t *port, bool sent)
 {
     port->not_sent += !sent;
     saddle_link_set(&port->link, sent ? SADDLE_LINK_UP : SADDLE_LINK_DOWN, "LCM",
-                    "a message cannot be sent, most often for want of a multicast route");
+                    "a message cannot be sent, probably because there is no multicast route");
 }
 
 static void publish(saddle_lcm_port_t *port, const char *channel, const uint8_t *bytes, int size)

@@ -16,8 +16,8 @@ typedef struct {
     char description[200]; /**< the URL and how far it reaches */
 } saddle_lcm_port_t;
 
-/** False: LCM cannot use the URL, most often for want of a multicast route. A route that is lost
- *  later is announced, and used again when it is back. */
+/** False: LCM cannot use the URL, probably because there is no multicast route. A route that is
+ *  lost later is announced, and used again when it is back. */
 bool saddle_lcm_open(saddle_lcm_port_t *port, const char *url);
 
 /** SADDLEWALK_INPUT, _PLAN, _SCORES, _VERDICT, _BALANCE, _BOS, _STATUS and, last, _HEALTH, all with

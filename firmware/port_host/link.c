@@ -14,6 +14,7 @@ void saddle_link_set(saddle_link_t *link, saddle_link_state_t state, const char 
         saddle_announce("%s is back", what);
     } else {
         saddle_announce("%s is lost: %s%s", what, why,
-                        state == SADDLE_LINK_DOWN ? "; ticks go on, and each tries it again" : "");
+                        state == SADDLE_LINK_DOWN ? "; ticks go on, and each one tries to reopen it"
+                                                  : "");
     }
 }

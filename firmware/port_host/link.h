@@ -14,7 +14,7 @@ typedef enum {
 
 typedef struct {
     saddle_link_state_t state;
-    uint32_t losses; /**< times that it was no longer up */
+    uint32_t losses; /**< number of times that it went down */
 } saddle_link_t;
 
 /** what: the transport, such as `CAN vcan0`; why: the reason, or NULL when it is up. */

@@ -17,14 +17,14 @@
 
 #define EXIT_BAD_INPUT 2
 
-/** A signal becomes a byte to read, which the loop waits for like everything else. */
+/** A signal writes a byte to a pipe, which the loop waits for with its other inputs. */
 static int stop_pipe[2];
 
 static void on_signal(int signal_number)
 {
     const int saved_errno = errno;
     (void)signal_number;
-    /* Full: there is something to read already. */
+    /* Full: a byte is waiting already. */
     while (write(stop_pipe[1], "", 1) < 0 && errno == EINTR) {
     }
     errno = saved_errno;
@@ -33,13 +33,13 @@ static void on_signal(int signal_number)
 static bool catch_signals(void)
 {
     const struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
-    const struct sigaction ignore = {.sa_handler = SIG_IGN}; /* the reader of our output has gone */
+    const struct sigaction ignore = {.sa_handler = SIG_IGN}; /* the reader of our output is gone */
     return pipe(stop_pipe) == 0 && fcntl(stop_pipe[1], F_SETFL, O_NONBLOCK) == 0 &&
            sigaction(SIGPIPE, &ignore, NULL) == 0 && sigaction(SIGINT, &action, NULL) == 0 &&
            sigaction(SIGTERM, &action, NULL) == 0;
 }
 
-/** Multicast is the only provider that lacks something which the user can set up. */
+/** Only multicast may need something that the user can set up. */
 static void complain_about_lcm(const char *url)
 {
     const char *right = strncmp(url, "udpm:", 5) == 0
@@ -49,7 +49,7 @@ static void complain_about_lcm(const char *url)
             right);
 }
 
-/** All that is open for a run. */
+/** Everything that is open during a run. */
 typedef struct {
     saddle_bus_t bus;
     saddle_lcm_port_t lcm;
@@ -150,7 +150,7 @@ static int run(const saddle_options_t *options, ports_t *ports)
     if (!demand_codes(&runner, options->command_key)) {
         return EXIT_BAD_INPUT;
     }
-    /* After LCM has its threads: they need no such place on the processor. */
+    /* After LCM has started its threads, which do not need this priority. */
     runner.realtime = saddle_realtime_enter(options->fifo_priority);
     print_start(options, &runner);
     saddle_runner_run(&runner);

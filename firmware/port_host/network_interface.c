@@ -7,8 +7,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/** Asked of a list, for by its name alone an interface that is not there makes the kernel look for
- *  a driver, which takes longer than a tick may. Lines but the first two are `  NAME: ...`. */
+/** Read from a list: asking for a missing interface by name makes the kernel look for a driver,
+ *  which takes longer than a tick. Lines but the first two are `  NAME: ...`. */
 static bool interface_exists(const char *name)
 {
     char line[256];

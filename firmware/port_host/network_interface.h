@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/** Whether there is one of that name and it is up. */
+/** Whether an interface of that name exists and is up. */
 bool saddle_interface_is_up(const char *name);
 
 #endif

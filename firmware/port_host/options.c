@@ -119,10 +119,10 @@ static void print_help(const saddle_config_t *config)
          "                     commands, until it is silent and the walk has ended\n"
          "  --command-key FILE accept only commands by CAN that are authenticated with this key\n"
          "  --lcm-from-network accept commands by LCM from other machines too\n"
-         "  --fifo PRIORITY    schedule by SCHED_FIFO, 1 to 99, and keep all memory in place\n"
+         "  --fifo PRIORITY    schedule by SCHED_FIFO, 1 to 99, and lock all memory\n"
          "  --clock CLOCK      realtime (default); lockstep: one tick per set of measurements\n"
          "  --ankle ANKLE      ankle strategy: erf (default), rigid, cycloid\n"
-         "  --set NAME=VALUE   a parameter of the person or the device, as often as needed\n"
+         "  --set NAME=VALUE   a parameter of the person or the device; repeatable\n"
          "  --help             this text\n\n"
          "parameter                   default     from       to");
     const saddle_config_field_t *field;

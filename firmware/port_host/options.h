@@ -6,13 +6,14 @@
 #include "inbox.h"
 
 typedef struct {
-    const char *can;       /**< as saddle_bus_open() takes it */
+    const char *can;       /**< for saddle_bus_open() */
     const char *lcm;       /**< an LCM URL; NULL: no LCM */
-    bool lcm_from_network; /**< commands by LCM from other machines count too */
+    bool lcm_from_network; /**< accept commands by LCM from other machines */
     bool lockstep;
     saddle_source_t command_from; /**< NONE: the first that commands */
-    const char *command_key;      /**< file with the key of the codes demanded; NULL: none is */
-    int fifo_priority;            /**< 0: the ordinary scheduler */
+    const char
+        *command_key;  /**< file with the key for authenticated commands; NULL: not required */
+    int fifo_priority; /**< 0: the ordinary scheduler */
     saddle_config_t config;
 } saddle_options_t;
 

@@ -14,8 +14,8 @@ saddle_realtime_t saddle_realtime_enter(int fifo_priority)
     }
     const struct sched_param wanted = {.sched_priority = fifo_priority};
     if (sched_setscheduler(0, SCHED_FIFO, &wanted) != 0) {
-        saddle_announce("--fifo %d refused (%s): run it as root, or give the process "
-                        "the capability cap_sys_nice; it goes on under the ordinary scheduler",
+        saddle_announce("--fifo %d: %s: run it as root, or give the process "
+                        "the capability cap_sys_nice; going on with the ordinary scheduler",
                         fifo_priority, strerror(errno));
         realtime.fifo_priority = 0;
     }

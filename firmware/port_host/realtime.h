@@ -1,4 +1,4 @@
-/** A place of its own on the processor. */
+/** Real-time scheduling and locked memory. */
 #ifndef SADDLEWALK_HOST_REALTIME_H
 #define SADDLEWALK_HOST_REALTIME_H
 
@@ -10,7 +10,8 @@ typedef struct {
 } saddle_realtime_t;
 
 /** Schedule the calling thread by SCHED_FIFO with that priority and keep all memory in place; 0:
- *  neither. What is refused is announced, with the reason, and done without. */
+ *  neither. What is not permitted is announced with the reason, and the process goes on without it.
+ *  */
 saddle_realtime_t saddle_realtime_enter(int fifo_priority);
 
 #endif

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/** A count as LCM has it, which knows no unsigned numbers. */
+/** A count for LCM, which has no unsigned numbers. */
 static int32_t limited(uint32_t count)
 {
     return count < INT32_MAX ? (int32_t)count : INT32_MAX;

@@ -7,7 +7,7 @@
 #include "lcm_port.h"
 #include "realtime.h"
 
-/** All that is reported on; nothing here is changed. */
+/** Everything that is reported; it is only read. */
 typedef struct {
     const saddle_timing_t *timing;
     const saddle_inbox_t *inbox;

@@ -8,7 +8,8 @@
 #include <sys/random.h>
 #include <sys/select.h>
 
-/** Taken at most between two looks at the clock, so that a flood cannot hold up a tick. */
+/** Maximum number of messages between two reads of the clock, so that a flood cannot delay a tick.
+ *  */
 #define FRAMES_AT_ONCE 256
 #define COMMANDS_AT_ONCE 16
 
@@ -21,7 +22,7 @@ static uint64_t lockstep_us(const saddle_runner_t *runner)
     return (uint64_t)runner->timing.ticks * SADDLE_TICK_US;
 }
 
-/** When something came that has waited for so long. */
+/** The reception time of something that has waited for waited_us. */
 static uint64_t arrival_us(const saddle_runner_t *runner, uint32_t waited_us)
 {
     if (runner->lockstep) {
@@ -31,7 +32,7 @@ static uint64_t arrival_us(const saddle_runner_t *runner, uint32_t waited_us)
     return now_us > waited_us ? now_us - waited_us : 0;
 }
 
-/** Announced once; later ones are counted. */
+/** Announced once; later ones are only counted. */
 static void reject_foreign_command(saddle_inbox_t *inbox, struct in_addr source)
 {
     char address[INET_ADDRSTRLEN];
@@ -50,7 +51,7 @@ static void take_lcm_command(saddle_runner_t *runner, const saddle_lcm_arrival_t
                               arrival_us(runner, arrival->waited_us));
 }
 
-/** Take what waits of LCM's commands. */
+/** Receive the waiting commands by LCM. */
 static void take_lcm_commands(saddle_runner_t *runner)
 {
     for (int i = 0; i < COMMANDS_AT_ONCE; ++i) {
@@ -69,7 +70,7 @@ static bool is_lockstep_due(const saddle_runner_t *runner)
     return runner->lockstep && saddle_inbox_set_complete(&runner->inbox);
 }
 
-/** Announced once; later ones are counted. */
+/** Announced once; later ones are only counted. */
 static void announce_first_bad_version(const saddle_wire_receiver_t *receiver, uint32_t before)
 {
     if (before == 0 && receiver->bad_version != 0) {
@@ -86,7 +87,7 @@ static void take_frame(saddle_runner_t *runner, const saddle_bus_frame_t *frame)
     announce_first_bad_version(&runner->inbox.receiver, bad_version_before);
 }
 
-/** Take what waits on the bus; in lockstep, no more once a set of measurements is complete. */
+/** Receive the waiting frames; in lockstep, only until a set of measurements is complete. */
 static void take_frames(saddle_runner_t *runner)
 {
     for (int i = 0; i < FRAMES_AT_ONCE && !is_lockstep_due(runner); ++i) {
@@ -159,7 +160,7 @@ static void tick(saddle_runner_t *runner, uint64_t time_us)
 {
     saddle_output_t output;
     const saddle_input_t *input = saddle_inbox_read(&runner->inbox, time_us);
-    (void)saddle_tick(&runner->context, input, &output); /* the status is part of the output */
+    (void)saddle_tick(&runner->context, input, &output); /* the status is in the output */
     if (saddle_wire_session_is_over(&runner->inbox.receiver, &output, runner->timing.ticks)) {
         open_session(runner);
     }
@@ -172,7 +173,7 @@ static void tick(saddle_runner_t *runner, uint64_t time_us)
     }
 }
 
-/** Wait for something to receive, or until a time; 0: however long. False: the loop must end. */
+/** Wait for input, or until a time; 0: without a limit. False: the loop must end. */
 static bool wait(const saddle_runner_t *runner, uint64_t until_us)
 {
     const uint64_t now = saddle_now_us();
@@ -194,7 +195,7 @@ static bool wait(const saddle_runner_t *runner, uint64_t until_us)
            !FD_ISSET(runner->stop_fd, &readable);
 }
 
-/** The newest place on the grid, from one that has been due for a while. */
+/** The newest due time on the grid, from one that was due before. */
 static uint64_t newest_place_us(saddle_runner_t *runner, uint64_t due_us, uint64_t now_us)
 {
     const uint64_t missed = (now_us - due_us) / SADDLE_TICK_US;
@@ -222,7 +223,7 @@ static void run_realtime(saddle_runner_t *runner)
     }
 }
 
-/** Without an end of its own, the wait would not see a link come back. */
+/** Without a limit of its own, the wait would not notice that a link came back. */
 static uint64_t lockstep_deadline_us(const saddle_runner_t *runner)
 {
     return runner->bus->link.state == SADDLE_LINK_DOWN ? saddle_now_us() + SADDLE_TICK_US : 0;

@@ -27,9 +27,9 @@ typedef struct {
     saddle_realtime_t realtime;
 } saddle_runner_t;
 
-/** Ready the runner. config has passed saddle_config_check(); bus and lcm are kept. Commands by LCM:
- *  set lcm_commands_fd afterwards, but not in lockstep, where commands come by CAN, in order with
- *  the measurements. */
+/** Initialise the runner. config has passed saddle_config_check(); the pointers bus and lcm are
+ *  kept. Commands by LCM: set lcm_commands_fd afterwards, but not in lockstep, where commands come
+ *  by CAN, in order with the measurements. */
 void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, bool lockstep,
                         saddle_source_t command_from, saddle_bus_t *bus, saddle_lcm_port_t *lcm,
                         int stop_fd);
@@ -40,7 +40,7 @@ void saddle_runner_demand_codes(saddle_runner_t *runner, const uint8_t key[SADDL
 /** Run until stop_fd is readable; a tick that has begun is finished. */
 void saddle_runner_run(saddle_runner_t *runner);
 
-/** The present state, to report. */
+/** The present state, for the report. */
 saddle_report_t saddle_runner_report(const saddle_runner_t *runner);
 
 #endif

@@ -19,8 +19,8 @@ static bool is_lockstep_due(const saddle_controller_t *controller)
     return controller->lockstep && saddle_inbox_set_complete(&controller->inbox);
 }
 
-/** At most what the queue holds, so that a flood cannot hold up a tick; in lockstep, no more once
- *  a set of measurements is complete. */
+/** At most as many frames as the queue holds, so that a flood cannot delay a tick; in lockstep,
+ *  none once a set of measurements is complete. */
 static void take_frames(saddle_controller_t *controller)
 {
     saddle_can_frame_t frame;
@@ -31,7 +31,8 @@ static void take_frames(saddle_controller_t *controller)
     }
 }
 
-/** If a tick is due: for what time. One whose place has passed is missed, not made up for. */
+/** Whether a tick is due, and for what time. A tick whose time has passed is missed, and not made
+ *  up. */
 static bool is_due(saddle_controller_t *controller, uint64_t *due_us)
 {
     if (controller->lockstep) {
@@ -62,7 +63,7 @@ static void send_output(saddle_controller_t *controller, const saddle_output_t *
     }
 }
 
-/** Only a tick that worked and is done before the next is due speaks for the controller. */
+/** Feed the watchdog only after a successful tick that ended before the next one is due. */
 static void tick(saddle_controller_t *controller, uint64_t due_us)
 {
     saddle_output_t output;

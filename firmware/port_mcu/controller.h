@@ -1,6 +1,6 @@
 /**
  * The loop of a controller: takes frames, ticks the core every 80 ms, sends. Portable C without a
- * heap; what it needs of the board is in board.h.
+ * heap; what it needs from the board is in board.h.
  *
  *     static saddle_controller_t controller;
  *     if (saddle_controller_init(&controller, &config, false) == SADDLE_OK)
@@ -19,16 +19,16 @@ typedef struct {
     saddle_inbox_t inbox;
     saddle_timing_t timing;
     bool lockstep;
-    uint32_t ticks_due; /**< the board's count at the last tick */
+    uint32_t ticks_due; /**< the board's timer count at the last tick */
     uint32_t not_sent;  /**< frames for which the board had no room */
 } saddle_controller_t;
 
-/** What saddle_init() returns. Unless that is SADDLE_OK there is nothing to run: every tick would
- *  be refused, and the watchdog never kicked. */
+/** What saddle_init() returns. If it is not SADDLE_OK do not run it: every tick would
+ *  be rejected, and the watchdog never fed. */
 saddle_status_t saddle_controller_init(saddle_controller_t *controller,
                                        const saddle_config_t *config, bool lockstep);
 
-/** Take what has come, and tick if a tick is due. Never waits. */
+/** Process received frames, and tick if a tick is due. Never waits. */
 void saddle_controller_step(saddle_controller_t *controller);
 
 #endif

@@ -1,5 +1,5 @@
-/** What is fitted to the wearer, in a page of flash that is written apart from the program: the
- *  same image serves everybody. */
+/** The configuration for the wearer, in a page of flash that is written separately from the
+ *  program: the same image serves all wearers. */
 #ifndef SADDLEWALK_MCU_SETTINGS_H
 #define SADDLEWALK_MCU_SETTINGS_H
 

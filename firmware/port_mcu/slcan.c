@@ -4,7 +4,7 @@
 #define ID_MAX 0x7FFu
 #define HEADER (1u + ID_DIGITS + 1u) /* tIIIL */
 
-/** 16 if it is no digit. */
+/** 16 if it is not a digit. */
 static uint32_t value_of(char digit)
 {
     if (digit >= '0' && digit <= '9') {

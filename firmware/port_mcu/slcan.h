@@ -9,24 +9,24 @@
 #define SADDLE_SLCAN_LINE 22u
 
 typedef enum {
-    SADDLE_SLCAN_NOTHING, /**< the line goes on, or says nothing that matters here */
+    SADDLE_SLCAN_NOTHING, /**< the line is incomplete, or has no meaning here */
     SADDLE_SLCAN_FRAME,
-    SADDLE_SLCAN_CLOSE,    /**< `C`: the other side leaves */
-    SADDLE_SLCAN_MALFORMED /**< no frame, or one that is not classic data with 11 bits */
+    SADDLE_SLCAN_CLOSE,    /**< `C`: the other side closes the channel */
+    SADDLE_SLCAN_MALFORMED /**< not a classic data frame with an 11-bit identifier */
 } saddle_slcan_event_t;
 
-/** The line so far. Start from all zeros. */
+/** The line so far. Initialise with zeros. */
 typedef struct {
     char line[SADDLE_SLCAN_LINE];
     size_t length; /**< characters kept; SADDLE_SLCAN_LINE, too long for a frame, if
                         more came */
 } saddle_slcan_reader_t;
 
-/** Take a character. SADDLE_SLCAN_FRAME: frame has been written, but for came_us; else it has not. */
+/** Process a character. SADDLE_SLCAN_FRAME: frame was written, except came_us; else it was not. */
 saddle_slcan_event_t saddle_slcan_read(saddle_slcan_reader_t *reader, char character,
                                        saddle_can_frame_t *frame);
 
-/** The text of a frame, and how many characters that are; there is no '\0' at the end. */
+/** Write the text of a frame, without a final '\0'; returns the number of characters. */
 size_t saddle_slcan_write(const saddle_can_frame_t *frame, char line[SADDLE_SLCAN_LINE]);
 
 #endif

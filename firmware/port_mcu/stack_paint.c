@@ -3,7 +3,7 @@
 /** More than what the compiler has of this function below its frame's address. */
 #define GAP_BYTES 256u
 
-/** Not to become part of a caller: then the frame would be the caller's. */
+/** Must not be inlined: then the frame would be the caller's. */
 __attribute__((noinline)) void saddle_stack_paint(uint32_t *lowest)
 {
     const uintptr_t end = (uintptr_t)__builtin_frame_address(0) - GAP_BYTES;

@@ -1,5 +1,5 @@
-/** How much of a stack was ever used: it is painted at the start, and what has lost its paint was.
- *  Stacks grow towards the lower address. */
+/** The maximum use of a stack: it is painted at the start, and words that were used have lost the
+ *  paint. Stacks grow towards the lower address. */
 #ifndef SADDLEWALK_MCU_STACK_PAINT_H
 #define SADDLEWALK_MCU_STACK_PAINT_H
 

@@ -345,7 +345,7 @@ def test_missing_privileges_are_reported_and_the_host_goes_on():
     process.terminate()
     _, errors = process.communicate(timeout=WAIT_S)
     assert process.returncode == 0 and "FIFO" not in first_line
-    assert "--fifo 20 refused (Operation not permitted): " in errors
+    assert "--fifo 20: Operation not permitted: " in errors
     assert SANITIZED or "memory cannot be locked (" in errors
     assert errors.count("\n") == (1 if SANITIZED else 2)
 

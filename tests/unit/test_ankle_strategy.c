@@ -33,7 +33,7 @@ static saddle_transition_t transition_at(float speed, double heel_strike_deg)
     return saddle_transition(model_of(&config), &quarter, strike);
 }
 
-static void test_toe_off_angles_of_the_paper_s_speeds(void)
+static void test_toe_off_angles_at_the_papers_speeds(void)
 {
     static const struct {
         float speed;
@@ -54,7 +54,7 @@ static void test_heel_strikes_before_the_saddle(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, transition_at(1.2f, 0.0).strike.lead_m);
 }
 
-static void test_toe_off_beyond_the_geometry_is_limited_and_said(void)
+static void test_toe_off_beyond_the_geometry_is_limited_and_reported(void)
 {
     config.cop_range_m = 0.01f; /* eq:08 asks for 0.028 m from a chord of at most 0.02 m */
     const saddle_transition_t long_step = transition_at(1.6f, 10.0);
@@ -108,7 +108,7 @@ static void test_profiles_are_the_equations_and_rates_their_derivatives(void)
 }
 
 /* Θ_TO of 0.9 rad would turn the sole by 1.8 rad after the heel strike. */
-static void test_sole_turns_no_further_than_upright_and_that_is_said(void)
+static void test_sole_turns_no_further_than_upright_and_reports_it(void)
 {
     saddle_transition_t transition = transition_at(1.2f, 10.0);
     transition.toe_off_rad = 0.9f;
@@ -186,7 +186,7 @@ static void test_ankle_angle_gives_the_leg_its_length(void)
     }
 }
 
-static void test_leg_out_of_the_ankle_s_range_flexes_the_knee_or_is_said(void)
+static void test_leg_outside_the_ankles_range_flexes_the_knee_or_is_reported(void)
 {
     bool limited = true;
     const saddle_ankle_state_t bent = ankle_for(body.pendulum_m - 0.003f, true, &limited);
@@ -206,15 +206,15 @@ static void test_leg_out_of_the_ankle_s_range_flexes_the_knee_or_is_said(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_toe_off_angles_of_the_paper_s_speeds);
+    RUN_TEST(test_toe_off_angles_at_the_papers_speeds);
     RUN_TEST(test_heel_strikes_before_the_saddle);
-    RUN_TEST(test_toe_off_beyond_the_geometry_is_limited_and_said);
+    RUN_TEST(test_toe_off_beyond_the_geometry_is_limited_and_reported);
     RUN_TEST(test_profiles_are_the_equations_and_rates_their_derivatives);
-    RUN_TEST(test_sole_turns_no_further_than_upright_and_that_is_said);
+    RUN_TEST(test_sole_turns_no_further_than_upright_and_reports_it);
     RUN_TEST(test_far_from_the_transition_the_leg_has_its_length);
     RUN_TEST(test_rigid_leg_keeps_its_length);
     RUN_TEST(test_height_closes_the_triangle_and_its_rate_is_the_derivative);
     RUN_TEST(test_ankle_angle_gives_the_leg_its_length);
-    RUN_TEST(test_leg_out_of_the_ankle_s_range_flexes_the_knee_or_is_said);
+    RUN_TEST(test_leg_outside_the_ankles_range_flexes_the_knee_or_is_reported);
     return UNITY_END();
 }

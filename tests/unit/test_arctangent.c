@@ -31,7 +31,7 @@ static void test_axes_and_the_origin(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, (double)saddle_arctangent(0.0f, 0.0f));
 }
 
-static void test_what_is_no_direction_is_0(void)
+static void test_zero_vector_has_direction_0(void)
 {
     const float absurd[] = {NAN, INFINITY, -INFINITY, 3e38f};
     for (size_t i = 0; i < COUNT_OF(absurd); i++) {
@@ -45,6 +45,6 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_every_direction_at_every_scale);
     RUN_TEST(test_axes_and_the_origin);
-    RUN_TEST(test_what_is_no_direction_is_0);
+    RUN_TEST(test_zero_vector_has_direction_0);
     return UNITY_END();
 }

@@ -255,7 +255,7 @@ static void test_collapse_over_the_feet_is_announced(void)
 }
 
 /* Sitting down in 0.6 s takes 0.8 m/s at most. Heights that come every 160 ms sink no faster. */
-static void test_sitting_down_is_no_collapse_however_slow_the_sensor(void)
+static void test_sitting_down_is_not_a_collapse_even_with_a_slow_sensor(void)
 {
     const int held_ticks[] = {1, 4, 8, 12};
     for (size_t i = 0; i < COUNT_OF(held_ticks); i++) {
@@ -275,7 +275,7 @@ static void test_sitting_down_is_no_collapse_however_slow_the_sensor(void)
 }
 
 /* A foot that is lost in between takes nothing from what is known of the CoM. */
-static void test_lost_foot_leaves_the_sinking_known(void)
+static void test_sinking_is_known_without_a_foot(void)
 {
     for (int lost = 0; lost < 2; lost++) {
         setUp();
@@ -311,7 +311,7 @@ static void test_com_below_the_knees_is_unstable_once_it_was_seen_above(void)
 }
 
 /* Nobody knows how fast the CoM sank while it was not measured. */
-static void test_height_before_a_gap_says_nothing_of_sinking(void)
+static void test_height_before_a_gap_does_not_count_for_sinking(void)
 {
     saddle_measurement_t seen = standing();
     tick(&seen);
@@ -358,7 +358,7 @@ static void test_step_without_a_length_is_not_learned(void)
     ASSERT_SAME_FLOAT(0.0f, learning.walk.step_time_s);
 }
 
-static void test_tolerance_is_the_walker_s_own(void)
+static void test_tolerance_is_the_walkers_own(void)
 {
     const float starts[] = {0.005f, 0.035f, 0.06f, 0.2f};
     const double borne[] = {0.42 - 2.4 * 0.005, 0.42 - 2.4 * 0.035, 0.42 - 2.4 * 0.06, 0.25};
@@ -374,7 +374,7 @@ static void test_tolerance_is_the_walker_s_own(void)
 
 /* The push must not teach its own measure: in the second after it the ripple grows by a quarter at
  * most. */
-static void test_push_teaches_no_tolerance(void)
+static void test_tolerance_is_not_learned_from_a_push(void)
 {
     tick_until(0, 100);
     const float ripple = output.walk.ripple;
@@ -390,7 +390,7 @@ static void test_push_teaches_no_tolerance(void)
 
 /* Caution begins at half of what the steady steps keep: whoever always comes near 0 is not warned of
  * each step, and whoever never does is warned early. */
-static void test_caution_band_is_the_walker_s_own(void)
+static void test_caution_band_is_the_walkers_own(void)
 {
     saddle_learning_t learning;
     saddle_learning_init(&learning, model_of(&config));
@@ -439,7 +439,7 @@ static void test_walking_speed_does_not_follow_a_stumble_within_a_step(void)
     }
 }
 
-static void test_slow_ticks_and_equal_times_learn_nothing_absurd(void)
+static void test_slow_ticks_and_equal_times_keep_the_learned_walk_valid(void)
 {
     saddle_measurement_t seen = standing();
     tick(&seen);
@@ -509,7 +509,7 @@ static void test_crossed_feet_stay_evidence_over_a_lost_tick_and_a_gap(void)
 }
 
 /* From the first tick on crossed feet are sides that were swapped. */
-static void test_feet_crossed_from_the_beginning_are_no_measurement(void)
+static void test_feet_crossed_from_the_beginning_are_not_a_measurement(void)
 {
     saddle_measurement_t seen = standing();
     seen.foot[SADDLE_LEFT].cop_m.y = -0.1f;
@@ -553,7 +553,7 @@ static void test_missing_inputs_are_unknown_at_once(void)
 
 /* ---- who is led ----------------------------------------------------------------------------- */
 
-static void test_plan_adds_what_the_step_to_come_can_do(void)
+static void test_plan_adds_the_reserve_of_the_next_step(void)
 {
     saddle_learning_t learning;
     saddle_learning_init(&learning, model_of(&config));
@@ -570,7 +570,7 @@ static void test_plan_adds_what_the_step_to_come_can_do(void)
     }
 }
 
-static void test_reason_of_a_step_that_catches_nothing(void)
+static void test_reason_of_an_insufficient_step(void)
 {
     const saddle_departure_t departure = {.offset = {0.1f, 0.2f}, .sink = 0.3f};
     TEST_ASSERT_EQUAL_INT(SADDLE_REASON_NO_STEP, saddle_driver(&departure, -0.31f));
@@ -592,7 +592,7 @@ static saddle_measurement_t measured_plan(const saddle_plan_t *plan)
 }
 
 /* Whoever walks on the other foot than the plan has is compared with no step of the plan. */
-static void test_walk_out_of_step_with_the_plan_is_no_fall(void)
+static void test_walk_out_of_step_with_the_plan_is_not_a_fall(void)
 {
     static saddle_context_t other;
     saddle_input_t walked = {.command = {SADDLE_COMMAND_WALK, 1.2f, 0.17f}};
@@ -621,26 +621,26 @@ int main(void)
     RUN_TEST(test_level_and_reason_follow_the_margin);
     RUN_TEST(test_sinking_com_is_evidence);
     RUN_TEST(test_collapse_over_the_feet_is_announced);
-    RUN_TEST(test_sitting_down_is_no_collapse_however_slow_the_sensor);
-    RUN_TEST(test_lost_foot_leaves_the_sinking_known);
+    RUN_TEST(test_sitting_down_is_not_a_collapse_even_with_a_slow_sensor);
+    RUN_TEST(test_sinking_is_known_without_a_foot);
     RUN_TEST(test_com_below_the_knees_is_unstable_once_it_was_seen_above);
-    RUN_TEST(test_height_before_a_gap_says_nothing_of_sinking);
+    RUN_TEST(test_height_before_a_gap_does_not_count_for_sinking);
     RUN_TEST(test_steady_walk_is_learned);
     RUN_TEST(test_step_without_a_length_is_not_learned);
-    RUN_TEST(test_tolerance_is_the_walker_s_own);
-    RUN_TEST(test_push_teaches_no_tolerance);
-    RUN_TEST(test_caution_band_is_the_walker_s_own);
+    RUN_TEST(test_tolerance_is_the_walkers_own);
+    RUN_TEST(test_tolerance_is_not_learned_from_a_push);
+    RUN_TEST(test_caution_band_is_the_walkers_own);
     RUN_TEST(test_walking_speed_does_not_follow_a_fall);
     RUN_TEST(test_walking_speed_does_not_follow_a_stumble_within_a_step);
-    RUN_TEST(test_slow_ticks_and_equal_times_learn_nothing_absurd);
+    RUN_TEST(test_slow_ticks_and_equal_times_keep_the_learned_walk_valid);
     RUN_TEST(test_falling_backward_without_a_walk_is_unstable);
     RUN_TEST(test_crossed_feet_and_flight_are_evidence_once_a_level_holds);
     RUN_TEST(test_crossed_feet_stay_evidence_over_a_lost_tick_and_a_gap);
-    RUN_TEST(test_feet_crossed_from_the_beginning_are_no_measurement);
+    RUN_TEST(test_feet_crossed_from_the_beginning_are_not_a_measurement);
     RUN_TEST(test_one_leg_and_feet_together_have_a_level);
     RUN_TEST(test_missing_inputs_are_unknown_at_once);
-    RUN_TEST(test_plan_adds_what_the_step_to_come_can_do);
-    RUN_TEST(test_reason_of_a_step_that_catches_nothing);
-    RUN_TEST(test_walk_out_of_step_with_the_plan_is_no_fall);
+    RUN_TEST(test_plan_adds_the_reserve_of_the_next_step);
+    RUN_TEST(test_reason_of_an_insufficient_step);
+    RUN_TEST(test_walk_out_of_step_with_the_plan_is_not_a_fall);
     return UNITY_END();
 }

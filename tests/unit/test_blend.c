@@ -14,7 +14,7 @@ static saddle_blend_t example(void)
     return saddle_blend(actual, reference, -0.25f, 0.3f);
 }
 
-static void test_mismatch_begins_as_it_is_and_ends_as_nothing_for_good(void)
+static void test_mismatch_fades_from_its_value_to_zero_and_stays_there(void)
 {
     const saddle_blend_t blend = example();
     const saddle_sample_t start = saddle_blend_at(&blend, -0.25f);
@@ -50,7 +50,7 @@ static void test_slope_is_the_derivative(void)
     }
 }
 
-static void test_no_length_is_no_mismatch(void)
+static void test_zero_length_gives_no_mismatch(void)
 {
     const saddle_blend_t none = {{0.1f, 0.5f}, 0.0f, 0.0f};
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, saddle_blend_at(&none, 0.0f).value);
@@ -60,8 +60,8 @@ static void test_no_length_is_no_mismatch(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_mismatch_begins_as_it_is_and_ends_as_nothing_for_good);
+    RUN_TEST(test_mismatch_fades_from_its_value_to_zero_and_stays_there);
     RUN_TEST(test_slope_is_the_derivative);
-    RUN_TEST(test_no_length_is_no_mismatch);
+    RUN_TEST(test_zero_length_gives_no_mismatch);
     return UNITY_END();
 }

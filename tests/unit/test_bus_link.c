@@ -84,7 +84,7 @@ static void expect_link(saddle_link_state_t state, uint32_t losses)
     TEST_ASSERT_EQUAL_UINT32(losses, bus.link.losses);
 }
 
-static void test_a_full_queue_drops_and_is_no_loss(void)
+static void test_a_full_queue_drops_frames_but_is_not_a_lost_link(void)
 {
     static const int full[] = {ENOBUFS, EAGAIN};
     for (size_t i = 0; i < 2; ++i) {
@@ -123,7 +123,7 @@ static void test_nothing_is_opened_while_the_link_is_up(void)
     TEST_ASSERT_EQUAL_INT(1, opened);
 }
 
-static void test_a_failed_receive_is_a_loss_but_for_an_empty_queue(void)
+static void test_a_failed_receive_is_a_lost_link_unless_the_queue_is_empty(void)
 {
     hear(SADDLE_BUS_FAILED, SADDLE_BUS_EMPTY);
     receive_error = EAGAIN;
@@ -150,10 +150,10 @@ static void test_bus_off_and_restart(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_a_full_queue_drops_and_is_no_loss);
+    RUN_TEST(test_a_full_queue_drops_frames_but_is_not_a_lost_link);
     RUN_TEST(test_an_interface_that_went_down_is_opened_again);
     RUN_TEST(test_nothing_is_opened_while_the_link_is_up);
-    RUN_TEST(test_a_failed_receive_is_a_loss_but_for_an_empty_queue);
+    RUN_TEST(test_a_failed_receive_is_a_lost_link_unless_the_queue_is_empty);
     RUN_TEST(test_bus_off_and_restart);
     return UNITY_END();
 }

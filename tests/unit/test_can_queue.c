@@ -48,7 +48,7 @@ static void test_frames_keep_their_order(void)
     }
 }
 
-static void test_a_full_queue_keeps_what_waits_and_counts_what_is_lost(void)
+static void test_a_full_queue_keeps_its_frames_and_counts_lost_ones(void)
 {
     for (uint16_t id = 0; id < SADDLE_CAN_QUEUE; ++id) {
         TEST_ASSERT_TRUE(put(id));
@@ -83,7 +83,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_frames_keep_their_order);
-    RUN_TEST(test_a_full_queue_keeps_what_waits_and_counts_what_is_lost);
+    RUN_TEST(test_a_full_queue_keeps_its_frames_and_counts_lost_ones);
     RUN_TEST(test_the_counts_may_wrap);
     return UNITY_END();
 }

@@ -24,7 +24,7 @@ static saddle_quarter_t quarter_at(float speed, saddle_side_t stance)
                           saddle_step_width_m(model_of(&config), speed), speed);
 }
 
-static void test_path_is_the_equation_s(void)
+static void test_path_follows_the_equation(void)
 {
     for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
         for (int side = SADDLE_LEFT; side <= SADDLE_RIGHT; side++) {
@@ -147,7 +147,7 @@ static void test_height_has_the_human_amplitude_offset_and_late(void)
     }
 }
 
-static void test_default_shape_is_the_paper_s_to_the_bit(void)
+static void test_default_shape_is_the_papers_bit_for_bit(void)
 {
     const saddle_quarter_t quarter = quarter_at(1.2f, SADDLE_RIGHT);
     const saddle_model_t *model = model_of(&config);
@@ -167,11 +167,11 @@ static void test_default_shape_is_the_paper_s_to_the_bit(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_path_is_the_equation_s);
+    RUN_TEST(test_path_follows_the_equation);
     RUN_TEST(test_via_points);
     RUN_TEST(test_phase_ends_with_the_quarter_and_is_known_at_via_points);
     RUN_TEST(test_sway_of_a_person_is_offset_and_late);
     RUN_TEST(test_height_has_the_human_amplitude_offset_and_late);
-    RUN_TEST(test_default_shape_is_the_paper_s_to_the_bit);
+    RUN_TEST(test_default_shape_is_the_papers_bit_for_bit);
     return UNITY_END();
 }

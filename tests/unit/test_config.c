@@ -19,7 +19,7 @@ static size_t field_count(void)
     return count;
 }
 
-static void test_default_is_the_paper_s_and_passes(void)
+static void test_default_is_the_papers_and_passes(void)
 {
     TEST_ASSERT_NULL(saddle_config_check(&config));
     ASSERT_SAME_FLOAT(63.3f, config.body_mass_kg);
@@ -216,7 +216,7 @@ static void test_longer_side_that_does_not_reach_its_shortest_step_is_named(void
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_default_is_the_paper_s_and_passes);
+    RUN_TEST(test_default_is_the_papers_and_passes);
     RUN_TEST(test_all_zero_fails);
     RUN_TEST(test_fields_cover_every_float_once);
     RUN_TEST(test_field_names_belong_to_their_offsets);

@@ -115,7 +115,7 @@ static void test_the_timer_makes_a_tick_due_once(void)
     TEST_ASSERT_EQUAL_UINT32(2, kicks);
 }
 
-static void test_a_late_tick_does_not_kick_the_watchdog(void)
+static void test_a_late_tick_does_not_feed_the_watchdog(void)
 {
     sending_us = 1000;
     const uint32_t latest_us = SADDLE_TICK_US - SADDLE_WIRE_OUTPUT_FRAMES * sending_us;
@@ -129,7 +129,7 @@ static void test_a_late_tick_does_not_kick_the_watchdog(void)
     TEST_ASSERT_EQUAL_UINT32(2, kicks);
 }
 
-static void test_a_tick_that_is_refused_does_not_kick_the_watchdog(void)
+static void test_a_rejected_tick_does_not_feed_the_watchdog(void)
 {
     timer(0);
     controller.context.last_time_us = UINT64_C(1) << 40;
@@ -138,7 +138,7 @@ static void test_a_tick_that_is_refused_does_not_kick_the_watchdog(void)
     TEST_ASSERT_EQUAL_UINT8(SADDLE_ERROR_TIME, sent[frames_sent - 1u].data[1] >> 4);
 }
 
-static void test_what_saddle_init_returns_is_told(void)
+static void test_result_of_saddle_init_is_returned(void)
 {
     config.body_mass_kg = -1.0f;
     TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_CONFIG, saddle_controller_init(&controller, &config, false));
@@ -156,7 +156,7 @@ static void test_missed_ticks_are_counted_not_made_up_for(void)
     TEST_ASSERT_EQUAL_UINT64(5 * SADDLE_TICK_US, controller.inbox.input.time_us);
 }
 
-static void test_measurements_that_cease_grow_old(void)
+static void test_missing_measurements_age(void)
 {
     bring_set(0, SADDLE_TICK_US - 5000u);
     timer(0);
@@ -167,7 +167,7 @@ static void test_measurements_that_cease_grow_old(void)
     TEST_ASSERT_EQUAL_UINT32(SADDLE_TICK_US + 5000u, measurement->foot[SADDLE_LEFT].age_us);
 }
 
-static void test_the_newest_of_what_waits_is_used(void)
+static void test_the_newest_waiting_frame_is_used(void)
 {
     bring_set(0, 10000);
     bring_set(1, 20000);
@@ -177,7 +177,7 @@ static void test_the_newest_of_what_waits_is_used(void)
                              controller.inbox.input.measurement.com.age_us);
 }
 
-static void test_what_has_no_room_is_counted(void)
+static void test_frames_without_room_are_counted(void)
 {
     room = 20;
     timer(0);
@@ -185,14 +185,14 @@ static void test_what_has_no_room_is_counted(void)
     TEST_ASSERT_EQUAL_UINT32(1, kicks);
 }
 
-static void test_frames_lost_by_the_board_are_told(void)
+static void test_frames_lost_by_the_board_are_reported(void)
 {
     lost = 3;
     timer(0);
     TEST_ASSERT_EQUAL_UINT16(3, rejected_frames(&sent[frames_sent - 1u]));
 }
 
-static void test_a_flood_does_not_hold_up_a_tick(void)
+static void test_a_flood_does_not_delay_a_tick(void)
 {
     flood = true;
     timer(0);
@@ -224,15 +224,15 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_timer_makes_a_tick_due_once);
-    RUN_TEST(test_a_late_tick_does_not_kick_the_watchdog);
-    RUN_TEST(test_a_tick_that_is_refused_does_not_kick_the_watchdog);
-    RUN_TEST(test_what_saddle_init_returns_is_told);
+    RUN_TEST(test_a_late_tick_does_not_feed_the_watchdog);
+    RUN_TEST(test_a_rejected_tick_does_not_feed_the_watchdog);
+    RUN_TEST(test_result_of_saddle_init_is_returned);
     RUN_TEST(test_missed_ticks_are_counted_not_made_up_for);
-    RUN_TEST(test_measurements_that_cease_grow_old);
-    RUN_TEST(test_the_newest_of_what_waits_is_used);
-    RUN_TEST(test_what_has_no_room_is_counted);
-    RUN_TEST(test_frames_lost_by_the_board_are_told);
-    RUN_TEST(test_a_flood_does_not_hold_up_a_tick);
+    RUN_TEST(test_missing_measurements_age);
+    RUN_TEST(test_the_newest_waiting_frame_is_used);
+    RUN_TEST(test_frames_without_room_are_counted);
+    RUN_TEST(test_frames_lost_by_the_board_are_reported);
+    RUN_TEST(test_a_flood_does_not_delay_a_tick);
     RUN_TEST(test_in_lockstep_a_set_makes_a_tick_due);
     return UNITY_END();
 }

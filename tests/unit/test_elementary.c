@@ -104,7 +104,7 @@ static void note_error(worst_t *worst, double error, double unit, float x)
     }
 }
 
-static void judge_point(const promise_t *promise, worst_errors_t *worst, float x)
+static void check_point(const promise_t *promise, worst_errors_t *worst, float x)
 {
     const float y = promise->function(x);
     const double exact = promise->reference((double)x);
@@ -119,7 +119,7 @@ static void judge_point(const promise_t *promise, worst_errors_t *worst, float x
     }
 }
 
-static void judge_bound(const char *kind, worst_t worst, double bound)
+static void check_bound(const char *kind, worst_t worst, double bound)
 {
     const double at = (double)worst.at;
     printf("largest %s error %.3e at %.9g, bound %.1e\n", kind, worst.error, at, bound);
@@ -131,15 +131,15 @@ static void walk(const promise_t *promise)
 {
     worst_errors_t worst = {0};
     for (uint32_t bits = 0; bits <= bits_of(promise->highest); bits++) {
-        judge_point(promise, &worst, float_of(bits));
+        check_point(promise, &worst, float_of(bits));
     }
     if (promise->symmetry == NO_SYMMETRY && promise->lowest < 0.0f) {
         for (uint32_t bits = bits_of(-0.0f); bits <= bits_of(promise->lowest); bits++) {
-            judge_point(promise, &worst, float_of(bits));
+            check_point(promise, &worst, float_of(bits));
         }
     }
-    judge_bound("absolute", worst.absolute, promise->absolute_bound);
-    judge_bound("relative", worst.relative, promise->relative_bound);
+    check_bound("absolute", worst.absolute, promise->absolute_bound);
+    check_bound("relative", worst.relative, promise->relative_bound);
 }
 
 static void expect_result(float (*function)(float), float x, float result)

@@ -131,7 +131,7 @@ static void test_used_share_of_the_base_moves_the_exit(void)
 }
 
 /* On the plan K = K_des: what is left is the way down to the border. */
-static void test_plan_without_deviation_has_only_the_way_to_the_border(void)
+static void test_plan_without_deviation_has_only_the_distance_to_the_border(void)
 {
     uint32_t state = 47;
     for (int i = 0; i < 1000; i++) {
@@ -145,7 +145,7 @@ static void test_plan_without_deviation_has_only_the_way_to_the_border(void)
     }
 }
 
-static void test_ankles_of_the_paper_s_body_absorb_six_joules(void)
+static void test_ankles_of_the_papers_body_absorb_six_joules(void)
 {
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 6.084, model_of(&config)->body.ankle_work_j);
     TEST_ASSERT_DOUBLE_WITHIN(2e-6, 63.3 * GRAVITY * 0.01 / PENDULUM,
@@ -196,7 +196,7 @@ static void test_energies_grow_with_the_mass(void)
 }
 
 /* No leg reaches the CoM, or the place on the border: feet 5 m apart, the exit midway. */
-static void test_no_energy_is_told_where_no_leg_reaches(void)
+static void test_no_energy_is_given_beyond_the_legs_reach(void)
 {
     const struct {
         saddle_vec2_t cop_m[2];
@@ -225,10 +225,10 @@ int main(void)
     RUN_TEST(test_excess_to_stop_by_hand);
     RUN_TEST(test_excess_equals_the_formulas_for_random_postures);
     RUN_TEST(test_used_share_of_the_base_moves_the_exit);
-    RUN_TEST(test_plan_without_deviation_has_only_the_way_to_the_border);
-    RUN_TEST(test_ankles_of_the_paper_s_body_absorb_six_joules);
+    RUN_TEST(test_plan_without_deviation_has_only_the_distance_to_the_border);
+    RUN_TEST(test_ankles_of_the_papers_body_absorb_six_joules);
     RUN_TEST(test_com_over_a_foot_at_w_d_h_has_as_much_as_the_ankles_absorb);
     RUN_TEST(test_energies_grow_with_the_mass);
-    RUN_TEST(test_no_energy_is_told_where_no_leg_reaches);
+    RUN_TEST(test_no_energy_is_given_beyond_the_legs_reach);
     return UNITY_END();
 }

@@ -83,7 +83,7 @@ static void assert_on_path(saddle_side_t stance, double v, double width, double 
     TEST_ASSERT_DOUBLE_WITHIN(2e-6, inward * a * turn * v * sin(turn * x), state->velocity_m_s.y);
 }
 
-static void test_steady_step_is_the_paper_s_walk_at_every_phase(void)
+static void test_steady_step_is_the_papers_walk_at_every_phase(void)
 {
     for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
         for (int side = 0; side < 2; side++) {
@@ -162,7 +162,7 @@ static void assert_landings_are_expected(void)
     }
 }
 
-static void test_expected_landing_is_the_plan_s_next_saddle_via_point(void)
+static void test_expected_landing_is_the_plans_next_saddle_via_point(void)
 {
     assert_landings_are_expected();
 }
@@ -213,7 +213,7 @@ static void test_com_outside_the_step_is_at_its_nearer_end(void)
     }
 }
 
-static void test_time_to_the_landing_is_at_most_the_foresight(void)
+static void test_time_to_the_landing_is_at_most_the_prediction_horizon(void)
 {
     config.prediction_horizon_s = 0.3f;
     const saddle_step_t step = steady_step(SADDLE_LEFT, 0.3);
@@ -255,7 +255,7 @@ static deviation_t random_deviation(uint32_t *state)
     return (deviation_t){random_in(state, -0.2f, 0.2f), random_in(state, -1.0f, 1.0f)};
 }
 
-static void test_no_deviation_stays_none_and_no_time_changes_nothing(void)
+static void test_zero_deviation_stays_zero_and_zero_time_changes_nothing(void)
 {
     uint32_t state = 53;
     const deviation_t none = {0.0f, 0.0f};
@@ -312,14 +312,14 @@ static void test_deviation_of_the_xcom_grows_by_the_exponential(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_steady_step_is_the_paper_s_walk_at_every_phase);
-    RUN_TEST(test_expected_landing_is_the_plan_s_next_saddle_via_point);
+    RUN_TEST(test_steady_step_is_the_papers_walk_at_every_phase);
+    RUN_TEST(test_expected_landing_is_the_plans_next_saddle_via_point);
     RUN_TEST(test_a_person_s_steady_walk_is_as_expected);
     RUN_TEST(test_quarters_have_shapes_of_their_own);
     RUN_TEST(test_com_outside_the_step_is_at_its_nearer_end);
-    RUN_TEST(test_time_to_the_landing_is_at_most_the_foresight);
+    RUN_TEST(test_time_to_the_landing_is_at_most_the_prediction_horizon);
     RUN_TEST(test_step_that_ends_beside_the_stance_foot_is_finite);
-    RUN_TEST(test_no_deviation_stays_none_and_no_time_changes_nothing);
+    RUN_TEST(test_zero_deviation_stays_zero_and_zero_time_changes_nothing);
     RUN_TEST(test_deviation_grows_as_a_pendulum_falls);
     RUN_TEST(test_deviation_of_the_xcom_grows_by_the_exponential);
     return UNITY_END();

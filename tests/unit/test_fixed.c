@@ -69,7 +69,7 @@ static void test_nanometres_are_the_nearest(void)
     TEST_ASSERT_TRUE(saddle_position_to_nm(1000000 * nanometre) == 1000000);
 }
 
-static void test_way_is_speed_times_time(void)
+static void test_distance_is_speed_times_time(void)
 {
     uint32_t state = 8;
     for (int i = 0; i < 100000; i++) {
@@ -142,7 +142,7 @@ int main(void)
     RUN_TEST(test_speed_is_exact_to_its_unit);
     RUN_TEST(test_position_is_exact_to_a_picometre);
     RUN_TEST(test_nanometres_are_the_nearest);
-    RUN_TEST(test_way_is_speed_times_time);
+    RUN_TEST(test_distance_is_speed_times_time);
     RUN_TEST(test_change_is_rate_times_time);
     RUN_TEST(test_any_bits_give_a_number_within_the_range);
     return UNITY_END();

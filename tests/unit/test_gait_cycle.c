@@ -155,7 +155,7 @@ static void test_last_swing_comes_to_rest_beside_the_stance_foot(void)
 }
 
 /* Roundings may end the speed a nanometre early. */
-static void test_last_swing_that_has_lost_its_speed_has_arrived(void)
+static void test_last_swing_without_speed_is_complete(void)
 {
     bool arrived = false;
     begin(1, 0.3f, false);
@@ -184,7 +184,7 @@ static void walk_to_landing(bool last_swing, uint32_t further_us)
     advance(further_us, &arrived);
 }
 
-static void test_landings_that_are_refused_change_nothing(void)
+static void test_rejected_landings_change_nothing(void)
 {
     static const struct {
         bool last_swing;
@@ -218,14 +218,14 @@ static void test_landings_that_are_refused_change_nothing(void)
 
 /* A last swing that stands beside its foot has no quarter left to stretch. Whether something is divided
  * by it all the same only the sanitizer sees. */
-static void test_landing_beside_the_stance_foot_divides_nothing_by_zero(void)
+static void test_landing_beside_the_stance_foot_does_not_divide_by_zero(void)
 {
     walk_to_landing(true, 0);
     put_at(0);
     TEST_ASSERT_FALSE(land_at(0.05f, 0.0f));
 }
 
-static void test_landing_far_beyond_a_short_step_or_the_leg_is_refused(void)
+static void test_landing_far_beyond_a_short_step_or_the_leg_is_rejected(void)
 {
     bool arrived;
     begin(0, 0.1f, true); /* quarters of 0.153 m */
@@ -315,10 +315,10 @@ int main(void)
     RUN_TEST(test_via_points_are_passed_in_order_and_to_the_nanometre);
     RUN_TEST(test_long_tick_passes_every_via_point);
     RUN_TEST(test_last_swing_comes_to_rest_beside_the_stance_foot);
-    RUN_TEST(test_last_swing_that_has_lost_its_speed_has_arrived);
-    RUN_TEST(test_landings_that_are_refused_change_nothing);
-    RUN_TEST(test_landing_beside_the_stance_foot_divides_nothing_by_zero);
-    RUN_TEST(test_landing_far_beyond_a_short_step_or_the_leg_is_refused);
+    RUN_TEST(test_last_swing_without_speed_is_complete);
+    RUN_TEST(test_rejected_landings_change_nothing);
+    RUN_TEST(test_landing_beside_the_stance_foot_does_not_divide_by_zero);
+    RUN_TEST(test_landing_far_beyond_a_short_step_or_the_leg_is_rejected);
     RUN_TEST(test_swing_goes_on_from_where_it_is_when_a_late_landing_is_taken_over);
     RUN_TEST(test_next_line_is_between_half_and_twice_a_step_width);
     RUN_TEST(test_heel_strike_angle_waits_for_the_heel_strike_after_the_next);

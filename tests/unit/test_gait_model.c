@@ -53,7 +53,7 @@ static void test_step_width_is_piecewise_with_the_ends_in_the_middle_piece(void)
     ASSERT_SAME_FLOAT(0.10f, saddle_step_width_m(model_of(&config), nextafterf(1.1f, 2.0f)));
 }
 
-static void test_half_step_is_the_regression_s_to_the_nanometre(void)
+static void test_half_step_is_the_regressions_to_the_nanometre(void)
 {
     for (float speed = 0.0f; speed < 1.93f; speed += 0.013f) {
         const saddle_fixed_t fixed = saddle_speed_from_m_s(speed);
@@ -67,7 +67,7 @@ static void test_half_step_is_the_regression_s_to_the_nanometre(void)
     }
 }
 
-static void test_quarter_at_the_paper_s_speeds(void)
+static void test_quarter_at_the_papers_speeds(void)
 {
     static const float speeds[] = {0.7f, 1.0f, 1.2f, 1.6f};
     for (size_t i = 0; i < COUNT_OF(speeds); i++) {
@@ -102,7 +102,7 @@ static void test_sides_have_their_own_step_length_and_width(void)
 }
 
 /* min S_SW = 1 - 2 A_y / d_SW = 1 - 1/(pi v), the paper's finding. */
-static void test_lateral_amplitude_gives_the_paper_s_stability(void)
+static void test_lateral_amplitude_gives_the_papers_stability(void)
 {
     static const struct {
         float speed;
@@ -175,7 +175,7 @@ static void test_feasible_speeds_lie_between_zero_and_the_ceiling(void)
 }
 
 /* Whichever of the two limits comes first, in every configuration that passes the check. */
-static void test_ceiling_parts_feasible_from_infeasible_for_any_person(void)
+static void test_ceiling_separates_feasible_from_infeasible_speeds(void)
 {
     uint32_t state = 7;
     int reach_first = 0;
@@ -209,15 +209,15 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_body_constants);
     RUN_TEST(test_step_width_is_piecewise_with_the_ends_in_the_middle_piece);
-    RUN_TEST(test_half_step_is_the_regression_s_to_the_nanometre);
-    RUN_TEST(test_quarter_at_the_paper_s_speeds);
+    RUN_TEST(test_half_step_is_the_regressions_to_the_nanometre);
+    RUN_TEST(test_quarter_at_the_papers_speeds);
     RUN_TEST(test_sides_have_their_own_step_length_and_width);
-    RUN_TEST(test_lateral_amplitude_gives_the_paper_s_stability);
+    RUN_TEST(test_lateral_amplitude_gives_the_papers_stability);
     RUN_TEST(test_lateral_amplitude_is_tangency_below_half_a_metre_per_second);
     RUN_TEST(test_lateral_factor_scales_the_amplitude_up_to_tangency);
     RUN_TEST(test_com_never_passes_tangency);
     RUN_TEST(test_step_bounds);
     RUN_TEST(test_feasible_speeds_lie_between_zero_and_the_ceiling);
-    RUN_TEST(test_ceiling_parts_feasible_from_infeasible_for_any_person);
+    RUN_TEST(test_ceiling_separates_feasible_from_infeasible_speeds);
     return UNITY_END();
 }

@@ -90,7 +90,7 @@ static void replay(const golden_run_t *run)
     }
 }
 
-static void test_every_run_is_reproduced_to_the_bit(void)
+static void test_every_run_is_reproduced_bit_for_bit(void)
 {
     TEST_ASSERT_EQUAL_size_t(12, COUNT_OF(GOLDEN_RUNS)); /* 4 speeds x 3 heel-strike angles */
     for (size_t i = 0; i < COUNT_OF(GOLDEN_RUNS); i++) {
@@ -102,6 +102,6 @@ static void test_every_run_is_reproduced_to_the_bit(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_every_run_is_reproduced_to_the_bit);
+    RUN_TEST(test_every_run_is_reproduced_bit_for_bit);
     return UNITY_END();
 }

@@ -55,7 +55,7 @@ static void test_order_fails_on_nan(void)
     MUST_FAIL(TEST_ASSERT_LESS_THAN_DOUBLE(1.0, 1.0));
 }
 
-static void test_same_float_tells_neighbours_and_zeros_apart(void)
+static void test_same_float_distinguishes_adjacent_floats_and_zeros(void)
 {
     ASSERT_SAME_FLOAT(1.0f, 1.0f);
     MUST_FAIL(ASSERT_SAME_FLOAT(1.0f, nextafterf(1.0f, 2.0f)));
@@ -84,7 +84,7 @@ int main(void)
     RUN_TEST(test_nan_fails);
     RUN_TEST(test_infinity_fails);
     RUN_TEST(test_order_fails_on_nan);
-    RUN_TEST(test_same_float_tells_neighbours_and_zeros_apart);
+    RUN_TEST(test_same_float_distinguishes_adjacent_floats_and_zeros);
     RUN_TEST(test_random_numbers_fill_their_range);
     return UNITY_END();
 }

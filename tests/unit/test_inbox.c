@@ -49,7 +49,7 @@ static void test_only_the_chosen_source_commands(void)
     TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US, saddle_inbox_read(&inbox, 5)->command_age_us);
 }
 
-static void test_what_cannot_be_used_gives_no_authority_and_no_age(void)
+static void test_unusable_inputs_give_no_authority_and_no_age(void)
 {
     saddle_inbox_take_command(&inbox, SADDLE_SOURCE_LCM, &no_mode, 0);
     saddle_inbox_take_command(&inbox, SADDLE_SOURCE_LCM, NULL, 0);
@@ -71,7 +71,7 @@ static void send_set(uint8_t counter, size_t frames_sent, uint64_t time_us)
     }
 }
 
-static void test_a_command_comes_by_can_too_and_a_code_changes_no_input(void)
+static void test_a_command_is_received_by_can_and_a_code_changes_no_input(void)
 {
     const saddle_cmac_key_t key = {{0}, {0}, {0}};
     saddle_frame_t command, code;
@@ -121,8 +121,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_first_that_commands_has_authority_until_released);
     RUN_TEST(test_only_the_chosen_source_commands);
-    RUN_TEST(test_what_cannot_be_used_gives_no_authority_and_no_age);
-    RUN_TEST(test_a_command_comes_by_can_too_and_a_code_changes_no_input);
+    RUN_TEST(test_unusable_inputs_give_no_authority_and_no_age);
+    RUN_TEST(test_a_command_is_received_by_can_and_a_code_changes_no_input);
     RUN_TEST(test_each_part_has_its_age);
     RUN_TEST(test_no_age_is_mistaken_for_never);
     RUN_TEST(test_a_set_is_of_one_instant_and_read_once);

@@ -176,7 +176,7 @@ static void test_velocities_are_derivatives(void)
 }
 
 /* Peak-to-peak z over a stride at 10 degrees, 2,000 points a step: the model page's table. */
-static void test_vertical_excursion_is_the_model_page_s(void)
+static void test_vertical_excursion_is_as_documented(void)
 {
     static const struct {
         float speed;
@@ -308,7 +308,7 @@ static void test_heel_strikes_at_its_share_of_a_step(void)
     }
 }
 
-static void test_cycloid_that_no_ankle_can_give_is_said(void)
+static void test_cycloid_beyond_the_ankle_is_reported(void)
 {
     config.ankle = SADDLE_ANKLE_CYCLOID;
     config.cop_range_m = 0.01f; /* an elongation of at most 2 cm */
@@ -320,7 +320,7 @@ static void test_cycloid_that_no_ankle_can_give_is_said(void)
     TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_TOE_OFF, limits);
 }
 
-static void test_toe_off_limit_is_said(void)
+static void test_toe_off_limit_is_reported(void)
 {
     config.cop_range_m = 0.01f;
     join(1.6f);
@@ -453,7 +453,7 @@ static void test_stop_at_any_moment_ends_side_by_side(void)
     }
 }
 
-static void test_command_at_any_moment_is_obeyed_in_the_end(void)
+static void test_command_at_any_moment_takes_effect(void)
 {
     uint32_t state = 41;
     int braked = 0;
@@ -649,7 +649,7 @@ static void test_measured_feet_give_the_nearest_phase(void)
 }
 
 /* A landing that was never measured is not taken for the first stance foot of the next walk. */
-static void test_start_after_an_unmeasured_walk_takes_no_old_landing(void)
+static void test_start_after_an_unmeasured_walk_uses_no_old_landing(void)
 {
     join(0.5f);
     command.mode = SADDLE_COMMAND_STAND;
@@ -662,7 +662,7 @@ static void test_start_after_an_unmeasured_walk_takes_no_old_landing(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.1, plan.foot_m[SADDLE_LEFT].y);
 }
 
-static void test_feet_that_no_walk_can_start_from_are_said(void)
+static void test_feet_from_which_no_walk_can_start_are_reported(void)
 {
     static const float bad[][4] = {{0.0f, -0.1f, 0.0f, 0.1f},
                                    {0.0f, 0.02f, 0.0f, -0.02f},
@@ -765,7 +765,7 @@ static void test_misplaced_landing_is_where_the_next_step_starts(void)
     }
 }
 
-static void test_landing_that_no_step_can_follow_is_said_and_not_used(void)
+static void test_landing_without_a_possible_next_step_is_reported_and_not_used(void)
 {
     static const float shifts[][2] = {{-0.65f, 0.0f}, {0.6f, 0.0f}, {0.0f, -0.12f}, {0.0f, 0.4f}};
     for (size_t i = 0; i < COUNT_OF(shifts); i++) {
@@ -806,7 +806,7 @@ static void test_landing_is_taken_over_early_with_both_feet_on_the_ground_only(v
 }
 
 /* At any moment of a start, a change of speed and a stop: when ticks of 10 us see the events. */
-static void test_events_are_foretold_between_ticks(void)
+static void test_events_are_predicted_between_ticks(void)
 {
     uint32_t state = 43;
     for (int i = 0; i < 40; i++) {
@@ -962,31 +962,31 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_constant_speed_is_the_closed_form);
     RUN_TEST(test_velocities_are_derivatives);
-    RUN_TEST(test_vertical_excursion_is_the_model_page_s);
+    RUN_TEST(test_vertical_excursion_is_as_documented);
     RUN_TEST(test_cycloid_excursion_is_delta_z_and_the_ankle_is_real_everywhere);
     RUN_TEST(test_shape_is_in_the_steady_plan);
     RUN_TEST(test_swing_of_a_person_is_in_the_steady_plan);
     RUN_TEST(test_heel_strikes_at_its_share_of_a_step);
-    RUN_TEST(test_cycloid_that_no_ankle_can_give_is_said);
-    RUN_TEST(test_toe_off_limit_is_said);
+    RUN_TEST(test_cycloid_beyond_the_ankle_is_reported);
+    RUN_TEST(test_toe_off_limit_is_reported);
     RUN_TEST(test_start_change_and_stop_are_smooth_in_every_ankle);
     RUN_TEST(test_stop_at_any_moment_ends_side_by_side);
-    RUN_TEST(test_command_at_any_moment_is_obeyed_in_the_end);
+    RUN_TEST(test_command_at_any_moment_takes_effect);
     RUN_TEST(test_restart_while_stopping_is_smooth);
     RUN_TEST(test_stop_slows_no_further_than_a_step_can_brake);
     RUN_TEST(test_stop_that_cannot_brake_in_time_brakes_no_longer);
     RUN_TEST(test_stop_of_a_slow_walk_stays_slow);
     RUN_TEST(test_ticks_of_any_length_start_alike);
     RUN_TEST(test_stop_while_starting);
-    RUN_TEST(test_start_after_an_unmeasured_walk_takes_no_old_landing);
+    RUN_TEST(test_start_after_an_unmeasured_walk_uses_no_old_landing);
     RUN_TEST(test_start_stands_then_shifts_then_steps);
     RUN_TEST(test_measured_feet_give_the_nearest_phase);
-    RUN_TEST(test_feet_that_no_walk_can_start_from_are_said);
+    RUN_TEST(test_feet_from_which_no_walk_can_start_are_reported);
     RUN_TEST(test_short_landing_does_not_stop_the_plan_at_once);
     RUN_TEST(test_misplaced_landing_is_where_the_next_step_starts);
-    RUN_TEST(test_landing_that_no_step_can_follow_is_said_and_not_used);
+    RUN_TEST(test_landing_without_a_possible_next_step_is_reported_and_not_used);
     RUN_TEST(test_landing_is_taken_over_early_with_both_feet_on_the_ground_only);
-    RUN_TEST(test_events_are_foretold_between_ticks);
+    RUN_TEST(test_events_are_predicted_between_ticks);
     RUN_TEST(test_sides_step_by_their_own_factors);
     RUN_TEST(test_speed_is_limited_to_what_is_feasible);
     RUN_TEST(test_longer_side_stays_within_reach_up_to_the_ceiling);

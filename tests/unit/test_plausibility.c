@@ -44,7 +44,7 @@ static uint32_t check_measurement(void)
 }
 
 /* Of this measurement alone. */
-static uint32_t judge_anew(void)
+static uint32_t check_again(void)
 {
     memset(&plausibility, 0, sizeof plausibility);
     return check_measurement();
@@ -78,11 +78,11 @@ static void test_age_at_the_limit_is_fresh_and_above_it_stale(void)
     for (size_t i = 0; i < COUNT_OF(ages); i++) {
         measured = good_measurement();
         *ages[i].age_us = ages[i].limit_us;
-        TEST_ASSERT_EQUAL_HEX32(0, judge_anew());
+        TEST_ASSERT_EQUAL_HEX32(0, check_again());
         *ages[i].age_us = ages[i].limit_us + 1u;
-        TEST_ASSERT_EQUAL_HEX32(ages[i].fault, judge_anew());
+        TEST_ASSERT_EQUAL_HEX32(ages[i].fault, check_again());
         *ages[i].age_us = SADDLE_AGE_NEVER_US;
-        TEST_ASSERT_EQUAL_HEX32(ages[i].fault, judge_anew());
+        TEST_ASSERT_EQUAL_HEX32(ages[i].fault, check_again());
     }
 }
 
@@ -126,7 +126,7 @@ static void test_absurd_number_in_any_field_is_a_range_fault(void)
         for (size_t k = 0; k < COUNT_OF(bad); k++) {
             measured = good_measurement();
             *fields[i].number = bad[k];
-            TEST_ASSERT_EQUAL_HEX32(fields[i].fault, judge_anew());
+            TEST_ASSERT_EQUAL_HEX32(fields[i].fault, check_again());
         }
         const float ends[] = {fields[i].min, fields[i].max};
         for (size_t k = 0; k < COUNT_OF(ends); k++) {
@@ -135,7 +135,7 @@ static void test_absurd_number_in_any_field_is_a_range_fault(void)
             /* the left foot may well be right of the right one */
             const uint32_t crossed = (uint32_t)SADDLE_FAULT_FEET_CROSSED;
             const uint32_t low = (uint32_t)SADDLE_FAULT_COM_LOW;
-            TEST_ASSERT_EQUAL_HEX32(0, judge_anew() & ~(crossed | low));
+            TEST_ASSERT_EQUAL_HEX32(0, check_again() & ~(crossed | low));
         }
     }
 }
@@ -156,7 +156,7 @@ static void test_com_between_knees_and_head_goes_with_the_body(void)
                  {1.21f, SADDLE_FAULT_COM_RANGE}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         measured.com.height_m = table[i].height_m;
-        TEST_ASSERT_EQUAL_HEX32(table[i].fault, judge_anew());
+        TEST_ASSERT_EQUAL_HEX32(table[i].fault, check_again());
     }
 }
 
@@ -192,7 +192,7 @@ static void test_recovery_is_at_once(void)
 
 /* The wearer moves at 0.5 m/s over feet that stand; the CoM's sensor still says 1.1 m/s. 0.6 m/s
  * amiss make more than 2 cm in one tick, but the bits may stay for com_max_age_s. */
-static void test_velocity_that_stays_while_the_feet_say_another_is_frozen(void)
+static void test_constant_velocity_that_contradicts_the_feet_is_frozen(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
     for (int tick = 1; tick <= 8; tick++) {
@@ -222,7 +222,7 @@ static void test_frozen_com_is_seen_along_either_axis_from_two_centimetres_on(vo
     }
 }
 
-static void test_frozen_com_is_believed_again_as_soon_as_it_changes(void)
+static void test_frozen_com_is_used_again_as_soon_as_it_changes(void)
 {
     check_measurement();
     for (int tick = 0; tick < 10; tick++) {
@@ -250,7 +250,7 @@ static void test_com_whose_height_changes_is_alive(void)
 }
 
 /* A walk at a constant speed without noise: the bits stay, and the feet agree. */
-static void test_constant_speed_that_the_feet_agree_with_is_not_frozen(void)
+static void test_constant_speed_that_agrees_with_the_feet_is_not_frozen(void)
 {
     check_measurement();
     for (int tick = 0; tick < 20; tick++) {
@@ -430,7 +430,7 @@ static void test_foot_under_a_resting_com_is_not_frozen(void)
 }
 
 /* The velocity is frozen, and a foot's place: after an outage both have to be seen anew. */
-static void test_outage_ends_what_was_frozen_until_it_is_seen_again(void)
+static void test_outage_ends_a_frozen_state(void)
 {
     check_measurement();
     for (int tick = 0; tick < 8; tick++) {
@@ -522,7 +522,7 @@ static void test_feet_that_cross_by_too_much_are_contradictory(void)
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         measured.foot[SADDLE_LEFT].cop_m.y = table[i].left_y;
         measured.foot[SADDLE_RIGHT].cop_m.y = table[i].right_y;
-        TEST_ASSERT_EQUAL_HEX32(table[i].fault, judge_anew());
+        TEST_ASSERT_EQUAL_HEX32(table[i].fault, check_again());
     }
     TEST_ASSERT_TRUE(((uint32_t)SADDLE_FAULT_FEET_CROSSED & SADDLE_FAULTS_FEET) != 0u);
 }
@@ -548,11 +548,11 @@ int main(void)
     RUN_TEST(test_stale_measurement_is_not_also_out_of_range);
     RUN_TEST(test_faults_add_up);
     RUN_TEST(test_recovery_is_at_once);
-    RUN_TEST(test_velocity_that_stays_while_the_feet_say_another_is_frozen);
+    RUN_TEST(test_constant_velocity_that_contradicts_the_feet_is_frozen);
     RUN_TEST(test_frozen_com_is_seen_along_either_axis_from_two_centimetres_on);
-    RUN_TEST(test_frozen_com_is_believed_again_as_soon_as_it_changes);
+    RUN_TEST(test_frozen_com_is_used_again_as_soon_as_it_changes);
     RUN_TEST(test_com_whose_height_changes_is_alive);
-    RUN_TEST(test_constant_speed_that_the_feet_agree_with_is_not_frozen);
+    RUN_TEST(test_constant_speed_that_agrees_with_the_feet_is_not_frozen);
     RUN_TEST(test_standing_still_without_noise_is_not_frozen);
     RUN_TEST(test_com_that_stands_still_under_a_planned_walk_is_frozen);
     RUN_TEST(test_feet_in_the_air_do_not_make_the_com_frozen);
@@ -562,7 +562,7 @@ int main(void)
     RUN_TEST(test_foot_is_alive_if_one_number_changes_or_the_com_hardly_moves);
     RUN_TEST(test_stream_that_repeats_itself_is_frozen_in_every_number);
     RUN_TEST(test_foot_under_a_resting_com_is_not_frozen);
-    RUN_TEST(test_outage_ends_what_was_frozen_until_it_is_seen_again);
+    RUN_TEST(test_outage_ends_a_frozen_state);
     RUN_TEST(test_outage_does_not_make_anything_frozen);
     RUN_TEST(test_push_of_a_standing_person_is_not_frozen);
     RUN_TEST(test_both_feet_in_the_air_for_long_is_airborne);

@@ -138,7 +138,7 @@ static void test_planned_walk_lands_where_it_is_planned_at_every_speed(void)
 }
 
 /* The model page: at 1.9 m/s the planned walk needs 0.83 m of the 0.97 m reach. */
-static void test_fast_walk_has_the_model_page_s_reach_left(void)
+static void test_fast_walk_has_the_documented_remaining_reach(void)
 {
     saddle_recovery_target_t target = planned_walk(1.9);
     const places_t free = places(&target);
@@ -267,7 +267,7 @@ static search_t search(const saddle_recovery_target_t *target, double wanted_x,
     return best;
 }
 
-static void test_landing_is_the_nearest_place_of_all_that_catch(void)
+static void test_landing_is_the_nearest_sufficient_place(void)
 {
     uint32_t state = 67;
     int found = 0;
@@ -317,7 +317,7 @@ static void test_margin_is_the_room_left_on_the_scarcer_axis(void)
 }
 
 /* In no time nothing grows, and no place is too near to sustain the XCoM: the reach alone counts. */
-static void test_step_of_no_time_has_the_whole_reach_behind_the_xcom(void)
+static void test_step_without_time_has_the_whole_reach_behind_the_xcom(void)
 {
     saddle_recovery_target_t target = planned_walk(1.2);
     target.step_time_s = 0.0f;
@@ -466,7 +466,7 @@ static float least_after(float deviation_m, saddle_cop_shift_t shift, float time
     return saddle_least_deviation_m(deviation_m, shift, &growth);
 }
 
-static void test_least_deviation_is_what_the_best_cop_leaves(void)
+static void test_least_deviation_is_that_with_the_best_cop(void)
 {
     uint32_t state = 89;
     int mended = 0;
@@ -495,7 +495,7 @@ static void test_without_a_shift_a_deviation_grows_freely(void)
     }
 }
 
-static void test_trailing_foot_mends_what_departs_towards_it_only(void)
+static void test_trailing_foot_corrects_only_deviations_towards_it(void)
 {
     const saddle_cop_shift_t towards = {.foot_m = 0.02f, .trailing_m = 0.5f};
     const saddle_cop_shift_t away = {.foot_m = 0.02f, .trailing_m = -0.5f};
@@ -508,20 +508,20 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_planned_walk_lands_where_it_is_planned_at_every_speed);
-    RUN_TEST(test_fast_walk_has_the_model_page_s_reach_left);
+    RUN_TEST(test_fast_walk_has_the_documented_remaining_reach);
     RUN_TEST(test_xcom_that_runs_ahead_pulls_the_landing_to_the_end_of_the_reach);
     RUN_TEST(test_xcom_that_falls_behind_pulls_the_landing_back_to_the_end_of_the_reach);
     RUN_TEST(test_xcom_that_goes_aside_widens_the_step_or_narrows_it);
-    RUN_TEST(test_landing_is_the_nearest_place_of_all_that_catch);
+    RUN_TEST(test_landing_is_the_nearest_sufficient_place);
     RUN_TEST(test_margin_is_the_room_left_on_the_scarcer_axis);
-    RUN_TEST(test_step_of_no_time_has_the_whole_reach_behind_the_xcom);
+    RUN_TEST(test_step_without_time_has_the_whole_reach_behind_the_xcom);
     RUN_TEST(test_margin_is_continuous);
     RUN_TEST(test_landing_follows_the_departure_by_its_share);
     RUN_TEST(test_share_that_is_followed_changes_neither_margin_nor_decision);
     RUN_TEST(test_margin_of_the_configuration_keeps_the_xcom_inside_the_foot);
     RUN_TEST(test_step_stops_where_the_xcom_lies_in_the_base_of_its_posture);
-    RUN_TEST(test_least_deviation_is_what_the_best_cop_leaves);
+    RUN_TEST(test_least_deviation_is_that_with_the_best_cop);
     RUN_TEST(test_without_a_shift_a_deviation_grows_freely);
-    RUN_TEST(test_trailing_foot_mends_what_departs_towards_it_only);
+    RUN_TEST(test_trailing_foot_corrects_only_deviations_towards_it);
     return UNITY_END();
 }

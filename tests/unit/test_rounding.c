@@ -26,7 +26,7 @@ static void test_this_build_rounds_as_written(void)
 }
 
 #ifdef MODES_CHANGE
-static void test_other_rounding_modes_are_noticed_by_init(void)
+static void test_other_rounding_modes_are_detected_by_init(void)
 {
     static const int modes[] = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
     const saddle_config_t config = paper_config();
@@ -49,7 +49,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_this_build_rounds_as_written);
 #ifdef MODES_CHANGE
-    RUN_TEST(test_other_rounding_modes_are_noticed_by_init);
+    RUN_TEST(test_other_rounding_modes_are_detected_by_init);
 #endif
     return UNITY_END();
 }

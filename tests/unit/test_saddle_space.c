@@ -549,7 +549,7 @@ static void test_gravity_ends_where_the_pendulum_lies_down(void)
 }
 
 /* On the arc, and moving along it: no way is left. */
-static void test_exit_from_the_arc_is_where_it_is(void)
+static void test_exit_from_the_arc(void)
 {
     const saddle_bos_t bos = side_by_side(0.25f);
     const saddle_vec2_t point = {0.0f, 0.25f};
@@ -561,7 +561,7 @@ static void test_exit_from_the_arc_is_where_it_is(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_exit_from_the_arc_is_where_it_is);
+    RUN_TEST(test_exit_from_the_arc);
     RUN_TEST(test_margins_of_each_region_by_hand);
     RUN_TEST(test_close_feet_make_the_plain_disc);
     RUN_TEST(test_frame_follows_the_feet);

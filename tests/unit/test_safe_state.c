@@ -48,7 +48,7 @@ static void test_input_that_is_stale_or_frozen_stops_in_the_same_tick(void)
     }
 }
 
-static void test_recording_goes_on_whatever_it_lacks(void)
+static void test_recording_goes_on_whatever_is_missing(void)
 {
     config.lost_inputs_stop = 0.0f;
     for (size_t i = 0; i < COUNT_OF(LOST); i++) {
@@ -77,7 +77,7 @@ static void test_glitches_do_not_add_up(void)
 }
 
 /* One fault after the other: it is the time without any usable measurement that counts. */
-static void test_unusable_in_turn_is_unusable_all_the_time(void)
+static void test_alternating_unusable_inputs_count_as_continuous(void)
 {
     update(0);
     for (int tick = 1; tick <= 6; tick++) {
@@ -99,7 +99,7 @@ static void test_other_faults_do_not_stop(void)
 }
 
 /* Good for 12 ticks, 0.96 s, is not yet 1 s; 13 ticks are. */
-static void test_walk_goes_on_after_all_has_been_good_for_resume_time(void)
+static void test_walk_resumes_after_valid_inputs_for_resume_time(void)
 {
     update(0);
     update(SADDLE_FAULT_COM_STALE);
@@ -108,7 +108,7 @@ static void test_walk_goes_on_after_all_has_been_good_for_resume_time(void)
     }
 }
 
-static void test_time_to_go_on_begins_anew_with_every_fault(void)
+static void test_resume_time_restarts_with_every_fault(void)
 {
     const uint32_t again[] = {SADDLE_FAULT_LEFT_STALE, SADDLE_FAULT_COM_RANGE,
                               SADDLE_FAULT_COMMAND_STALE};
@@ -126,7 +126,7 @@ static void test_time_to_go_on_begins_anew_with_every_fault(void)
     }
 }
 
-static void test_without_a_resume_time_the_first_good_tick_goes_on(void)
+static void test_without_a_resume_time_the_first_valid_tick_resumes(void)
 {
     config.resume_time_s = 0.0f;
     update(0);
@@ -163,7 +163,7 @@ static void test_measurement_of_which_a_part_never_came_stops(void)
     }
 }
 
-static void test_gap_between_the_ticks_stops_if_nobody_walks_for_so_long(void)
+static void test_long_gap_between_the_ticks_stops(void)
 {
     config.step_time_max_s = 4.0f;
     saddle_safe_state_gap(&state, model_of(&config), 10.0f);
@@ -192,17 +192,17 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_good_inputs_never_stop);
     RUN_TEST(test_input_that_is_stale_or_frozen_stops_in_the_same_tick);
-    RUN_TEST(test_recording_goes_on_whatever_it_lacks);
+    RUN_TEST(test_recording_goes_on_whatever_is_missing);
     RUN_TEST(test_measurement_that_is_unusable_stops_once_it_has_been_for_com_max_age);
     RUN_TEST(test_glitches_do_not_add_up);
-    RUN_TEST(test_unusable_in_turn_is_unusable_all_the_time);
+    RUN_TEST(test_alternating_unusable_inputs_count_as_continuous);
     RUN_TEST(test_other_faults_do_not_stop);
-    RUN_TEST(test_walk_goes_on_after_all_has_been_good_for_resume_time);
-    RUN_TEST(test_time_to_go_on_begins_anew_with_every_fault);
-    RUN_TEST(test_without_a_resume_time_the_first_good_tick_goes_on);
+    RUN_TEST(test_walk_resumes_after_valid_inputs_for_resume_time);
+    RUN_TEST(test_resume_time_restarts_with_every_fault);
+    RUN_TEST(test_without_a_resume_time_the_first_valid_tick_resumes);
     RUN_TEST(test_measurements_that_never_came_are_not_needed);
     RUN_TEST(test_measurement_of_which_a_part_never_came_stops);
-    RUN_TEST(test_gap_between_the_ticks_stops_if_nobody_walks_for_so_long);
+    RUN_TEST(test_long_gap_between_the_ticks_stops);
     RUN_TEST(test_stale_command_stops_a_planner_alone_too);
     return UNITY_END();
 }

@@ -44,7 +44,7 @@ static void expect_refused(void)
     TEST_ASSERT_FALSE(lockstep);
 }
 
-static void test_every_field_comes_from_the_page(void)
+static void test_every_field_is_read_from_the_page(void)
 {
     TEST_ASSERT_TRUE(saddle_settings_read(page, &config, &lockstep));
     TEST_ASSERT_TRUE(lockstep);
@@ -58,7 +58,7 @@ static void test_every_field_comes_from_the_page(void)
     TEST_ASSERT_FALSE(lockstep);
 }
 
-static void test_a_page_that_was_never_written_is_refused(void)
+static void test_a_page_that_was_never_written_is_rejected(void)
 {
     memset(page, 0xFF, sizeof page);
     expect_refused();
@@ -66,7 +66,7 @@ static void test_a_page_that_was_never_written_is_refused(void)
     expect_refused();
 }
 
-static void test_every_flipped_bit_is_refused(void)
+static void test_every_flipped_bit_is_rejected(void)
 {
     for (size_t bit = 0; bit < 32u * words(); ++bit) {
         page[bit / 32u] ^= 1u << bit % 32u;
@@ -92,9 +92,9 @@ static void test_the_names_of_the_fields_count(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_every_field_comes_from_the_page);
-    RUN_TEST(test_a_page_that_was_never_written_is_refused);
-    RUN_TEST(test_every_flipped_bit_is_refused);
+    RUN_TEST(test_every_field_is_read_from_the_page);
+    RUN_TEST(test_a_page_that_was_never_written_is_rejected);
+    RUN_TEST(test_every_flipped_bit_is_rejected);
     RUN_TEST(test_the_names_of_the_fields_count);
     return UNITY_END();
 }

@@ -38,7 +38,7 @@ static void test_a_frame_is_read(void)
     TEST_ASSERT_EQUAL_UINT8(0, frame.length);
 }
 
-static void test_what_is_written_is_read_again(void)
+static void test_written_frames_read_back(void)
 {
     char line[SADDLE_SLCAN_LINE + 1] = {0};
     const saddle_can_frame_t written = {.id = 0x140, .length = 3, .data = {0xFE, 0x00, 0x9A}};
@@ -51,7 +51,7 @@ static void test_what_is_written_is_read_again(void)
     TEST_ASSERT_EQUAL_size_t(SADDLE_SLCAN_LINE, saddle_slcan_write(&longest, line));
 }
 
-static void test_other_lines_are_no_frame_and_do_not_harm_the_next(void)
+static void test_other_lines_are_not_frames_and_do_not_affect_the_next(void)
 {
     static const char *const lines[] = {
         "t\r",          "t10\r",
@@ -83,8 +83,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_frame_is_read);
-    RUN_TEST(test_what_is_written_is_read_again);
-    RUN_TEST(test_other_lines_are_no_frame_and_do_not_harm_the_next);
+    RUN_TEST(test_written_frames_read_back);
+    RUN_TEST(test_other_lines_are_not_frames_and_do_not_affect_the_next);
     RUN_TEST(test_the_channel_is_opened_and_closed);
     return UNITY_END();
 }

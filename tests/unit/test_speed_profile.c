@@ -127,7 +127,7 @@ static void test_time_is_the_inverse_of_advance(void)
     }
 }
 
-static void test_way_beyond_a_stop_never_comes(void)
+static void test_distance_beyond_a_stop_is_never_reached(void)
 {
     profile = profile_of(0.5f, 0.0f, 0.5f); /* stops after 0.25 m */
     ASSERT_SAME_FLOAT(SADDLE_TIME_MAX_S, time_s(&profile, 0.26f));
@@ -143,6 +143,6 @@ int main(void)
     RUN_TEST(test_no_rate_keeps_the_speed_and_no_speed_keeps_the_place);
     RUN_TEST(test_from_rest_and_at_no_rate_everything_stays_a_number);
     RUN_TEST(test_time_is_the_inverse_of_advance);
-    RUN_TEST(test_way_beyond_a_stop_never_comes);
+    RUN_TEST(test_distance_beyond_a_stop_is_never_reached);
     return UNITY_END();
 }

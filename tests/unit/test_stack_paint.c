@@ -11,7 +11,7 @@ void setUp(void) {}
 
 void tearDown(void) {}
 
-static void test_what_lost_its_paint_was_used(void)
+static void test_used_words_lose_their_paint(void)
 {
     uint32_t stack[WORDS];
     for (int i = 0; i < WORDS; ++i) {
@@ -34,7 +34,7 @@ static uint8_t use_much(void)
     return bytes[7];
 }
 
-static void test_what_the_callers_have_is_not_painted(void)
+static void test_the_callers_frames_are_not_painted(void)
 {
     volatile uint32_t live[WORDS];
     uint32_t *const top = __builtin_frame_address(0);
@@ -56,7 +56,7 @@ static void test_what_the_callers_have_is_not_painted(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_what_lost_its_paint_was_used);
-    RUN_TEST(test_what_the_callers_have_is_not_painted);
+    RUN_TEST(test_used_words_lose_their_paint);
+    RUN_TEST(test_the_callers_frames_are_not_painted);
     return UNITY_END();
 }

@@ -46,7 +46,7 @@ static void strike_with(saddle_side_t side)
 
 /* ---- heel strikes -------------------------------------------------------------------------- */
 
-static void test_contact_from_the_start_is_no_heel_strike(void)
+static void test_contact_from_the_start_is_not_a_heel_strike(void)
 {
     for (int tick = 0; tick < 5; tick++) {
         track();
@@ -56,7 +56,7 @@ static void test_contact_from_the_start_is_no_heel_strike(void)
 }
 
 /* 0.12 s and less: 1 ms ticks, as a fast contact sensor gives them. */
-static void test_contact_that_flickers_is_no_heel_strike(void)
+static void test_flickering_contact_is_not_a_heel_strike(void)
 {
     const struct {
         int airborne_ms;
@@ -261,7 +261,7 @@ static void test_step_over_a_gap_between_the_ticks_gives_no_v_comp(void)
 }
 
 /* A step that could not be measured is the last one all the same: what was before it is old. */
-static void test_strike_that_cannot_be_measured_ends_what_was_known(void)
+static void test_unmeasured_strike_clears_the_last_step(void)
 {
     strike_with(SADDLE_LEFT);
     strike_with(SADDLE_RIGHT);
@@ -352,7 +352,7 @@ static void test_heel_strike_after_a_long_gap_does_not_keep_the_speed(void)
     TEST_ASSERT_TRUE(tracker.half_step_known); /* of this landing */
 }
 
-static void test_standing_is_seen_anew_after_a_gap(void)
+static void test_standing_is_detected_again_after_a_gap(void)
 {
     measured.com.velocity_m_s = (saddle_vec2_t){0.0f, 0.0f};
     track();
@@ -455,8 +455,8 @@ static void test_standing_holds_until_a_step_is_complete(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_contact_from_the_start_is_no_heel_strike);
-    RUN_TEST(test_contact_that_flickers_is_no_heel_strike);
+    RUN_TEST(test_contact_from_the_start_is_not_a_heel_strike);
+    RUN_TEST(test_flickering_contact_is_not_a_heel_strike);
     RUN_TEST(test_losses_of_contact_do_not_add_up);
     RUN_TEST(test_flicker_after_a_landing_leaves_the_step);
     RUN_TEST(test_half_step_is_half_of_what_the_landed_foot_is_ahead);
@@ -469,13 +469,13 @@ int main(void)
     RUN_TEST(test_step_with_a_gap_in_the_velocity_gives_no_v_comp);
     RUN_TEST(test_step_that_begins_without_a_velocity_gives_no_v_comp);
     RUN_TEST(test_step_over_a_gap_between_the_ticks_gives_no_v_comp);
-    RUN_TEST(test_strike_that_cannot_be_measured_ends_what_was_known);
+    RUN_TEST(test_unmeasured_strike_clears_the_last_step);
     RUN_TEST(test_strikes_of_one_instant_give_no_v_comp);
     RUN_TEST(test_last_step_is_forgotten_after_step_time_max);
     RUN_TEST(test_step_is_forgotten_also_while_nothing_is_measured);
     RUN_TEST(test_step_is_forgotten_over_a_long_gap_between_the_ticks);
     RUN_TEST(test_heel_strike_after_a_long_gap_does_not_keep_the_speed);
-    RUN_TEST(test_standing_is_seen_anew_after_a_gap);
+    RUN_TEST(test_standing_is_detected_again_after_a_gap);
     RUN_TEST(test_walk_that_goes_on_is_not_forgotten);
     RUN_TEST(test_stance_is_the_foot_that_landed_last_or_the_only_one_down);
     RUN_TEST(test_standing_is_both_feet_down_and_a_slow_com);

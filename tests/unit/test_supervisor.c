@@ -118,7 +118,7 @@ static void assert_unscored_is_zero(void)
     }
 }
 
-static void test_good_measurement_has_no_fault_and_every_score_but_the_step_s(void)
+static void test_valid_measurement_has_no_fault_and_every_score_but_those_of_the_step(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, update());
     TEST_ASSERT_EQUAL_HEX32(UNTIL_STEP, scores.valid);
@@ -233,7 +233,7 @@ static void test_heel_strike_opens_the_step_scores(void)
     TEST_ASSERT_DOUBLE_WITHIN(2e-6, (0.3 - reach) / (reference - reach), scores.s_jump);
 }
 
-static void test_v_comp_is_the_planner_s_until_a_step_is_complete_then_the_mean(void)
+static void test_v_comp_is_the_planners_until_a_step_is_complete_then_the_mean(void)
 {
     update();
     strike_with(SADDLE_LEFT); /* opens the first step at 1.1 m/s */
@@ -252,7 +252,7 @@ static void test_v_comp_is_the_planner_s_until_a_step_is_complete_then_the_mean(
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.14, scores.v_comp_m_s);
 }
 
-static void test_speed_that_cannot_be_walked_is_said(void)
+static void test_infeasible_speed_is_reported(void)
 {
     const float speeds[] = {-0.5f, 0.0f, 2.5f};
     for (size_t i = 0; i < COUNT_OF(speeds); i++) {
@@ -380,7 +380,7 @@ static void test_twice_the_ankles_work_stops_twice_the_energy(void)
 }
 
 /* A walk at 1.2 m/s, too fast to stop: a stable step is all three scores above 0. */
-static void test_paper_s_verdict_needs_all_three_scores_or_the_stop(void)
+static void test_papers_verdict_needs_all_three_scores_or_the_stop(void)
 {
     const struct {
         float half_step, com_y, speed_x;
@@ -407,7 +407,7 @@ static void test_paper_s_verdict_needs_all_three_scores_or_the_stop(void)
     }
 }
 
-static void test_paper_s_verdict_needs_the_scores_to_be_known(void)
+static void test_papers_verdict_needs_known_scores(void)
 {
     const uint32_t missing[] = {SADDLE_KNOWN_FEET, SADDLE_KNOWN_SPEED, SADDLE_KNOWN_HALF_STEP};
     saddle_posture_t posture = {
@@ -442,21 +442,21 @@ static void test_used_share_of_the_base_is_that_of_the_configuration(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_good_measurement_has_no_fault_and_every_score_but_the_step_s);
+    RUN_TEST(test_valid_measurement_has_no_fault_and_every_score_but_those_of_the_step);
     RUN_TEST(test_each_fault_takes_the_scores_that_need_its_input);
     RUN_TEST(test_recovery_is_at_once_and_complete);
     RUN_TEST(test_feet_together_have_no_saddle_space);
     RUN_TEST(test_heel_strike_opens_the_step_scores);
-    RUN_TEST(test_v_comp_is_the_planner_s_until_a_step_is_complete_then_the_mean);
-    RUN_TEST(test_speed_that_cannot_be_walked_is_said);
+    RUN_TEST(test_v_comp_is_the_planners_until_a_step_is_complete_then_the_mean);
+    RUN_TEST(test_infeasible_speed_is_reported);
     RUN_TEST(test_nobody_walking_and_nothing_planned_has_no_speed);
     RUN_TEST(test_walk_goes_on_having_a_speed_when_nothing_is_planned);
     RUN_TEST(test_validity_follows_from_what_is_known);
     RUN_TEST(test_com_out_of_the_pendulum_s_reach_has_no_energy);
     RUN_TEST(test_can_stop_is_the_energy_within_the_ankles_work);
     RUN_TEST(test_twice_the_ankles_work_stops_twice_the_energy);
-    RUN_TEST(test_paper_s_verdict_needs_all_three_scores_or_the_stop);
-    RUN_TEST(test_paper_s_verdict_needs_the_scores_to_be_known);
+    RUN_TEST(test_papers_verdict_needs_all_three_scores_or_the_stop);
+    RUN_TEST(test_papers_verdict_needs_known_scores);
     RUN_TEST(test_used_share_of_the_base_is_that_of_the_configuration);
     return UNITY_END();
 }

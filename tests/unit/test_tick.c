@@ -104,7 +104,7 @@ static void assert_hold(saddle_status_t status)
     TEST_ASSERT_TRUE(same_output(&hold, &output));
 }
 
-static void test_null_arguments_are_refused_with_a_complete_output(void)
+static void test_null_arguments_are_rejected_with_a_complete_output(void)
 {
     TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_tick(NULL, &input, &output));
     assert_hold(SADDLE_ERROR_NULL);
@@ -124,7 +124,7 @@ static void test_tick_without_an_output_changes_nothing(void)
     TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(0)); /* still the first */
 }
 
-static void test_context_without_init_is_refused_with_a_complete_output(void)
+static void test_context_without_init_is_rejected_with_a_complete_output(void)
 {
     const uint8_t fills[] = {0x00, 0xA5, 0xFF};
     for (size_t i = 0; i < COUNT_OF(fills); i++) {
@@ -134,7 +134,7 @@ static void test_context_without_init_is_refused_with_a_complete_output(void)
     }
 }
 
-static void test_failed_init_leaves_the_context_refused(void)
+static void test_failed_init_leaves_the_context_uninitialised(void)
 {
     TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(0));
     config.body_height_m = NAN;
@@ -168,7 +168,7 @@ static void test_good_tick_writes_every_field(void)
     TEST_ASSERT_EQUAL_HEX32(0, output.limits);
 }
 
-static void test_time_backwards_is_refused_and_forgotten(void)
+static void test_time_backwards_is_rejected_and_ignored(void)
 {
     saddle_context_t twin;
     saddle_output_t undisturbed;
@@ -201,7 +201,7 @@ static void test_plan_advances_by_the_time_that_passed_from_any_origin(void)
     }
 }
 
-static void test_late_tick_advances_by_tick_max_and_says_so(void)
+static void test_late_tick_advances_by_tick_max_and_reports_it(void)
 {
     const uint64_t gaps[] = {200001,    1000000, 0xFFFFFFFFu, 0x100000000u, 0x100000000u + 80000u,
                              UINT64_MAX};
@@ -242,7 +242,7 @@ static void test_unusable_command_leaves_the_last_good_one(void)
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.2 * 0.16, output.plan.com_m.x);
 }
 
-static void test_stop_is_obeyed_whatever_its_numbers(void)
+static void test_stop_is_applied_whatever_its_numbers(void)
 {
     join();
     tick_at(0);
@@ -312,7 +312,7 @@ static void test_contexts_are_independent_and_deterministic(void)
 }
 
 /* The model page's figures of the plan: min S_SW, and the share of time with the XCoM inside. */
-static void test_planned_walk_has_the_paper_s_stability(void)
+static void test_planned_walk_has_the_papers_stability(void)
 {
     static const struct {
         float speed;
@@ -662,7 +662,7 @@ static bool same_plan(const saddle_plan_t *a, const saddle_plan_t *b)
 }
 
 /* Through start, changes, stop and restart: with any tick, and without a trace in the context. */
-static void test_plan_at_is_the_next_tick_s_plan_to_the_bit(void)
+static void test_plan_at_is_the_next_ticks_plan_bit_for_bit(void)
 {
     uint32_t state = 47;
     uint64_t t = 1000000;
@@ -693,7 +693,7 @@ static void test_plan_at_is_the_next_tick_s_plan_to_the_bit(void)
     }
 }
 
-static void test_plan_at_of_a_steady_walk_is_the_next_tick_s_in_every_field(void)
+static void test_plan_at_of_a_steady_walk_is_the_next_ticks_in_every_field(void)
 {
     input.measurement = saddle_no_measurement();
     join();
@@ -705,7 +705,7 @@ static void test_plan_at_of_a_steady_walk_is_the_next_tick_s_in_every_field(void
     }
 }
 
-static void test_plan_at_beyond_its_span_is_refused(void)
+static void test_plan_at_beyond_its_span_is_rejected(void)
 {
     saddle_plan_t plan;
     memset(&plan, 0xA5, sizeof plan);
@@ -885,7 +885,7 @@ static void test_wearer_who_follows_the_plan_never_departs_from_it(void)
 }
 
 /* Nothing was commanded and nobody stands: whoever walks there is no follower of the plan. */
-static void test_plan_that_only_stands_leads_nobody(void)
+static void test_standing_plan_is_no_reference(void)
 {
     config.previous_level = 1.0f;
     saddle_init(&context, &config);
@@ -962,7 +962,7 @@ static void test_age_of_the_last_usable_command_counts(void)
 }
 
 /* resume_time_s is 1 s: 13 ticks. It has come to stand by then and starts anew. */
-static void test_walk_goes_on_only_after_the_inputs_were_good_for_resume_time(void)
+static void test_walk_resumes_only_after_valid_inputs_for_resume_time(void)
 {
     uint64_t t = walk_for_a_while();
     input.measurement.com.age_us = SADDLE_AGE_NEVER_US;
@@ -997,33 +997,33 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_field_list_is_complete);
-    RUN_TEST(test_null_arguments_are_refused_with_a_complete_output);
+    RUN_TEST(test_null_arguments_are_rejected_with_a_complete_output);
     RUN_TEST(test_tick_without_an_output_changes_nothing);
-    RUN_TEST(test_context_without_init_is_refused_with_a_complete_output);
-    RUN_TEST(test_failed_init_leaves_the_context_refused);
+    RUN_TEST(test_context_without_init_is_rejected_with_a_complete_output);
+    RUN_TEST(test_failed_init_leaves_the_context_uninitialised);
     RUN_TEST(test_good_tick_writes_every_field);
-    RUN_TEST(test_time_backwards_is_refused_and_forgotten);
+    RUN_TEST(test_time_backwards_is_rejected_and_ignored);
     RUN_TEST(test_plan_advances_by_the_time_that_passed_from_any_origin);
-    RUN_TEST(test_late_tick_advances_by_tick_max_and_says_so);
+    RUN_TEST(test_late_tick_advances_by_tick_max_and_reports_it);
     RUN_TEST(test_unusable_command_leaves_the_last_good_one);
-    RUN_TEST(test_stop_is_obeyed_whatever_its_numbers);
+    RUN_TEST(test_stop_is_applied_whatever_its_numbers);
     RUN_TEST(test_standing_is_a_plan_of_both_feet_on_the_ground);
     RUN_TEST(test_init_again_starts_over_and_keeps_no_pointer);
     RUN_TEST(test_contexts_are_independent_and_deterministic);
-    RUN_TEST(test_planned_walk_has_the_paper_s_stability);
+    RUN_TEST(test_planned_walk_has_the_papers_stability);
     RUN_TEST(test_any_bytes_in_any_configuration_give_a_sound_output);
-    RUN_TEST(test_plan_at_is_the_next_tick_s_plan_to_the_bit);
-    RUN_TEST(test_plan_at_of_a_steady_walk_is_the_next_tick_s_in_every_field);
-    RUN_TEST(test_plan_at_beyond_its_span_is_refused);
+    RUN_TEST(test_plan_at_is_the_next_ticks_plan_bit_for_bit);
+    RUN_TEST(test_plan_at_of_a_steady_walk_is_the_next_ticks_in_every_field);
+    RUN_TEST(test_plan_at_beyond_its_span_is_rejected);
     RUN_TEST(test_join_needs_a_walk);
     RUN_TEST(test_wearer_who_follows_the_plan_never_departs_from_it);
-    RUN_TEST(test_plan_that_only_stands_leads_nobody);
+    RUN_TEST(test_standing_plan_is_no_reference);
     RUN_TEST(test_scores_of_a_plan_need_a_context_and_a_plan);
     RUN_TEST(test_joined_walk_goes_on_without_a_usable_command);
     RUN_TEST(test_lost_input_stops_the_walk_in_the_same_tick);
     RUN_TEST(test_command_that_stays_unusable_stops_the_walk);
     RUN_TEST(test_age_of_the_last_usable_command_counts);
-    RUN_TEST(test_walk_goes_on_only_after_the_inputs_were_good_for_resume_time);
+    RUN_TEST(test_walk_resumes_only_after_valid_inputs_for_resume_time);
     RUN_TEST(test_gap_between_the_ticks_ends_the_level_and_the_walk);
     RUN_TEST(test_step_scores_end_with_the_com);
     RUN_TEST(test_plan_that_was_never_given_measurements_walks_on);

@@ -277,7 +277,7 @@ static void assert_numbers(const walk_t *walk, double x, state_t deviation)
     assert_recovery(walk, (point_t){off.x * growth, off.y * growth});
 }
 
-static void test_wearer_on_the_plan_has_the_plan_s_numbers(void)
+static void test_wearer_on_the_plan_has_the_plans_numbers(void)
 {
     const double speeds[] = {0.5, 0.7, 1.0, 1.2, 1.6};
     for (size_t i = 0; i < COUNT_OF(speeds); i++) {
@@ -290,7 +290,7 @@ static void test_wearer_on_the_plan_has_the_plan_s_numbers(void)
     }
 }
 
-static void test_deviation_from_the_plan_gives_the_model_s_numbers(void)
+static void test_deviation_from_the_plan_gives_the_models_numbers(void)
 {
     uint32_t state = 97;
     for (int i = 0; i < 2000; i++) {
@@ -305,7 +305,7 @@ static void test_deviation_from_the_plan_gives_the_model_s_numbers(void)
 }
 
 /* The wearer moves the CoP by up to cop_shift, and over to the trailing foot while it stands. */
-static void test_recovery_is_for_what_the_cop_cannot_mend(void)
+static void test_recovery_step_is_for_deviations_beyond_the_cop(void)
 {
     const double x = -0.5 * 0.35;
     const walk_t walk = walk_at(1.2, SADDLE_LEFT);
@@ -333,7 +333,7 @@ static void test_recovery_is_for_what_the_cop_cannot_mend(void)
     }
 }
 
-static void test_what_is_not_compared_is_zero(void)
+static void test_results_that_were_not_compared_are_zero(void)
 {
     const uint32_t faults[] = {SADDLE_FAULT_COM_STALE, SADDLE_FAULT_LEFT_RANGE,
                                SADDLE_FAULT_AIRBORNE};
@@ -396,7 +396,7 @@ static void test_unusable_input_is_unknown(void)
     }
 }
 
-static void test_nobody_known_to_walk_or_stand_is_unknown(void)
+static void test_neither_walking_nor_standing_is_unknown(void)
 {
     deviate(0.0, NONE);
     intent = (saddle_intent_t){.leads = false};
@@ -429,7 +429,7 @@ static void test_xcom_off_the_planned_one_by_more_than_its_band_is_a_caution(voi
 }
 
 /* 0.2 m/s too fast are 15 J and 0.065 m of XCoM. */
-static void test_energy_that_the_ankles_cannot_bring_back_is_a_caution(void)
+static void test_energy_beyond_the_ankles_is_a_caution(void)
 {
     deviate(0.0, (state_t){ORIGIN, {0.2, 0.0}});
     update(0);
@@ -474,7 +474,7 @@ static void test_body_almost_over_a_foot_is_a_caution(void)
     }
 }
 
-static void test_speed_that_cannot_be_walked_is_a_caution(void)
+static void test_infeasible_speed_is_a_caution(void)
 {
     deviate(0.0, NONE);
     supervisor.steps.v_comp_m_s = 2.5f;
@@ -482,7 +482,7 @@ static void test_speed_that_cannot_be_walked_is_a_caution(void)
     assert_verdict(SADDLE_LEVEL_CAUTION, SADDLE_REASON_SPEED);
 }
 
-static void test_no_place_to_step_to_is_unstable_whichever_way(void)
+static void test_no_place_to_step_to_is_unstable_in_any_direction(void)
 {
     const point_t pushes[] = {{2.0, 0.0}, {-4.0, 0.0}, {0.0, 1.0}, {0.0, -2.0}};
     for (size_t i = 0; i < COUNT_OF(pushes); i++) {
@@ -495,7 +495,7 @@ static void test_no_place_to_step_to_is_unstable_whichever_way(void)
 }
 
 /* The worst comes first: no step, then a bad speed, the scores, the XCoM, the energy. */
-static void test_reason_is_the_gravest(void)
+static void test_reason_is_the_most_severe(void)
 {
     deviate(0.0, (state_t){ORIGIN, {2.0, 0.0}});
     supervisor.steps.half_step_m = 0.1f;
@@ -657,7 +657,7 @@ static void test_walk_without_a_plan_is_compared_with_its_own_last_step(void)
 
 /* The last half step was longer than usual at that speed: behind the stance foot it counts. A step
  * that was none, or is not known, is a usual one. */
-static void test_way_behind_the_stance_foot_is_the_last_half_step(void)
+static void test_distance_behind_the_stance_foot_is_the_last_half_step(void)
 {
     const walk_t usual = walk_at(0.9, SADDLE_LEFT);
     walk_t behind = usual;
@@ -686,7 +686,7 @@ static void test_way_behind_the_stance_foot_is_the_last_half_step(void)
 
 /* A walk of narrow steps lands narrow again, but no narrower than half the usual width, nor wider
  * than twice. */
-static void test_walk_of_one_s_own_goes_on_at_its_own_width(void)
+static void test_own_walk_continues_at_its_own_width(void)
 {
     const struct {
         float last_m;
@@ -702,7 +702,7 @@ static void test_walk_of_one_s_own_goes_on_at_its_own_width(void)
     }
 }
 
-static void test_walk_of_one_s_own_at_no_speed_is_unknown(void)
+static void test_own_walk_without_speed_is_unknown(void)
 {
     const walk_t own = walk_at(1.2, SADDLE_LEFT);
     const float speeds[] = {-0.5f, 0.0f, 0.0099f, 3.91f};
@@ -745,7 +745,7 @@ static void test_walk_above_the_ceiling_steps_no_further_than_the_leg_reaches(vo
     }
 }
 
-static void test_walk_of_one_s_own_is_judged_by_its_scores(void)
+static void test_own_walk_is_assessed_by_its_scores(void)
 {
     const walk_t own = walk_at(1.2, SADDLE_LEFT);
     intent = (saddle_intent_t){.leads = false};
@@ -757,7 +757,7 @@ static void test_walk_of_one_s_own_is_judged_by_its_scores(void)
 }
 
 /* The plan leads in its own phase: who lags behind it has departed, though at the right speed. */
-static void test_wearer_who_lags_behind_the_plan_has_departed_from_it(void)
+static void test_wearer_who_lags_behind_the_plan_deviates_from_it(void)
 {
     const walk_t walk = walk_at(1.2, SADDLE_LEFT);
     plan(&walk, 0.2);
@@ -774,7 +774,7 @@ static void test_wearer_who_lags_behind_the_plan_has_departed_from_it(void)
 
 /* The plan stands on its left foot already, the wearer alone on the right one still: they are
  * compared with a step at the plan's speed on the right foot; with both down, with the plan's. */
-static void test_wearer_on_another_foot_than_the_plan_is_in_a_step_of_their_own(void)
+static void test_wearer_on_another_foot_than_the_plan_is_in_their_own_step(void)
 {
     for (int side = 0; side < 2; side++) {
         const saddle_side_t ahead = (saddle_side_t)side;
@@ -838,7 +838,7 @@ static void test_level_that_comes_and_goes_is_not_announced(void)
 }
 
 /* Never stable, never unstable for three ticks: a caution, for the reason of the last one. */
-static void test_level_that_flips_between_two_is_announced_as_the_lesser(void)
+static void test_level_that_alternates_is_announced_as_the_less_severe(void)
 {
     config.level_hold_ticks = 3.0f;
     for (int tick = 0; tick < 3; tick++) {
@@ -891,20 +891,20 @@ static void test_reason_of_an_announced_level_is_the_present_one(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_wearer_on_the_plan_has_the_plan_s_numbers);
-    RUN_TEST(test_deviation_from_the_plan_gives_the_model_s_numbers);
-    RUN_TEST(test_recovery_is_for_what_the_cop_cannot_mend);
-    RUN_TEST(test_what_is_not_compared_is_zero);
+    RUN_TEST(test_wearer_on_the_plan_has_the_plans_numbers);
+    RUN_TEST(test_deviation_from_the_plan_gives_the_models_numbers);
+    RUN_TEST(test_recovery_step_is_for_deviations_beyond_the_cop);
+    RUN_TEST(test_results_that_were_not_compared_are_zero);
     RUN_TEST(test_wearer_on_the_plan_is_stable);
     RUN_TEST(test_unusable_input_is_unknown);
-    RUN_TEST(test_nobody_known_to_walk_or_stand_is_unknown);
+    RUN_TEST(test_neither_walking_nor_standing_is_unknown);
     RUN_TEST(test_xcom_off_the_planned_one_by_more_than_its_band_is_a_caution);
-    RUN_TEST(test_energy_that_the_ankles_cannot_bring_back_is_a_caution);
+    RUN_TEST(test_energy_beyond_the_ankles_is_a_caution);
     RUN_TEST(test_step_that_is_almost_too_short_or_too_long_is_a_caution);
     RUN_TEST(test_body_almost_over_a_foot_is_a_caution);
-    RUN_TEST(test_speed_that_cannot_be_walked_is_a_caution);
-    RUN_TEST(test_no_place_to_step_to_is_unstable_whichever_way);
-    RUN_TEST(test_reason_is_the_gravest);
+    RUN_TEST(test_infeasible_speed_is_a_caution);
+    RUN_TEST(test_no_place_to_step_to_is_unstable_in_any_direction);
+    RUN_TEST(test_reason_is_the_most_severe);
     RUN_TEST(test_person_who_stands_is_compared_with_standing_midway);
     RUN_TEST(test_planned_shift_of_weight_is_the_reference_while_it_leads);
     RUN_TEST(test_standing_person_steps_to_the_side_of_the_push);
@@ -912,16 +912,16 @@ int main(void)
     RUN_TEST(test_person_who_can_stop_needs_no_step);
     RUN_TEST(test_standing_has_no_scores_of_a_walk);
     RUN_TEST(test_walk_without_a_plan_is_compared_with_its_own_last_step);
-    RUN_TEST(test_way_behind_the_stance_foot_is_the_last_half_step);
-    RUN_TEST(test_walk_of_one_s_own_goes_on_at_its_own_width);
-    RUN_TEST(test_walk_of_one_s_own_at_no_speed_is_unknown);
+    RUN_TEST(test_distance_behind_the_stance_foot_is_the_last_half_step);
+    RUN_TEST(test_own_walk_continues_at_its_own_width);
+    RUN_TEST(test_own_walk_without_speed_is_unknown);
     RUN_TEST(test_walk_above_the_ceiling_steps_no_further_than_the_leg_reaches);
-    RUN_TEST(test_walk_of_one_s_own_is_judged_by_its_scores);
-    RUN_TEST(test_wearer_who_lags_behind_the_plan_has_departed_from_it);
-    RUN_TEST(test_wearer_on_another_foot_than_the_plan_is_in_a_step_of_their_own);
+    RUN_TEST(test_own_walk_is_assessed_by_its_scores);
+    RUN_TEST(test_wearer_who_lags_behind_the_plan_deviates_from_it);
+    RUN_TEST(test_wearer_on_another_foot_than_the_plan_is_in_their_own_step);
     RUN_TEST(test_level_is_announced_once_it_has_held);
     RUN_TEST(test_level_that_comes_and_goes_is_not_announced);
-    RUN_TEST(test_level_that_flips_between_two_is_announced_as_the_lesser);
+    RUN_TEST(test_level_that_alternates_is_announced_as_the_less_severe);
     RUN_TEST(test_hold_of_a_hundred_ticks_is_kept);
     RUN_TEST(test_unknown_is_announced_at_once_and_settles_again);
     RUN_TEST(test_reason_of_an_announced_level_is_the_present_one);

@@ -78,7 +78,7 @@ static void test_numbers_beyond_the_range_saturate(void)
     TEST_ASSERT_EQUAL_INT16(INT16_MIN, raw_speed(NAN));
 }
 
-static void test_every_single_bit_error_is_refused(void)
+static void test_every_single_bit_error_is_rejected(void)
 {
     for (size_t bit = 0; bit < 8u * SADDLE_WIRE_LENGTH; ++bit) {
         saddle_frame_t frame = command_frame(0);
@@ -88,7 +88,7 @@ static void test_every_single_bit_error_is_refused(void)
     TEST_ASSERT_EQUAL_UINT32(64, receiver.bad_crc);
 }
 
-static void test_frame_under_another_identifier_is_refused(void)
+static void test_frame_under_another_identifier_is_rejected(void)
 {
     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
     const saddle_measurement_t measurement = {.com.height_m = 1.0f};
@@ -98,7 +98,7 @@ static void test_frame_under_another_identifier_is_refused(void)
     TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_crc);
 }
 
-static void test_what_the_firmware_does_not_receive_is_malformed(void)
+static void test_messages_that_the_firmware_does_not_receive_are_malformed(void)
 {
     const saddle_frame_t frame = command_frame(0);
     const uint32_t identifiers[] = {0x101, 0x127, 0x128, 0x140, 0x7FF, 0x80000100u, UINT32_MAX};
@@ -114,7 +114,7 @@ static void test_what_the_firmware_does_not_receive_is_malformed(void)
     TEST_ASSERT_EQUAL_UINT32(0, receiver.accepted);
 }
 
-static void test_another_wire_version_is_refused(void)
+static void test_another_wire_version_is_rejected(void)
 {
     saddle_frame_t frame = command_frame(0);
     uint8_t covered[9] = {(uint8_t)frame.id, (uint8_t)(frame.id >> 8)};
@@ -144,11 +144,11 @@ static void test_counter_rule(void)
     expect_counters("334", "nny");   /* repeats */
     expect_counters("9", "n");       /* 5 ahead of 4 */
     expect_counters("ab", "yy");     /* it had restarted there */
-    expect_counters("5505", "nnnn"); /* a refused frame never counts as the last accepted */
+    expect_counters("5505", "nnnn"); /* a rejected frame never counts as the last accepted */
     expect_counters("c", "y");
 }
 
-static void test_messages_count_apart(void)
+static void test_messages_have_separate_counters(void)
 {
     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
     const saddle_measurement_t measurement = {.com.height_m = 1.0f};
@@ -215,7 +215,7 @@ static void test_a_plan_that_is_not_valid_has_no_numbers(void)
     TEST_ASSERT_EQUAL_HEX8_ARRAY(nothing, &frames[9].data[1], 7);
 }
 
-static saddle_output_t judged(void)
+static saddle_output_t sample_output(void)
 {
     return (saddle_output_t){
         .scores = {.valid = SADDLE_VALID_STOP, .excess_stop_j = 31.2f, .paper_stable = true},
@@ -247,24 +247,24 @@ static void assert_judgement(const saddle_output_t *output, const uint8_t expect
 /** Written out by hand from the DBC. Byte 1 holds the bits above the counter: on track and stable
  *  by the paper; compared; found and the right foot. Then 312 and -5 (0.1 J), 2500 and -3000
  *  (0.1 mm), level 2 and reason 10, 500 and -200, 7000, -1500 and 2000. */
-static void test_judgement_bytes(void)
+static void test_verdict_bytes(void)
 {
     const uint8_t expected[4][7] = {{0x67, 0x38, 0x01, 0xFB, 0xFF, 0x00, 0x00},
                                     {0x07, 0xC4, 0x09, 0x48, 0xF4, 0x00, 0x00},
                                     {0x17, 0x02, 0x0A, 0xF4, 0x01, 0x38, 0xFF},
                                     {0x57, 0x58, 0x1B, 0x24, 0xFA, 0xD0, 0x07}};
-    const saddle_output_t output = judged();
+    const saddle_output_t output = sample_output();
     assert_judgement(&output, expected);
 }
 
 /** The energies hang on a bit of their own; all that the plan is needed for on `compared`. */
-static void test_what_was_not_compared_has_no_numbers(void)
+static void test_results_that_were_not_compared_have_no_numbers(void)
 {
     const uint8_t not_compared[4][7] = {{0x67, 0x38, 0x01, 0x00, 0x80, 0x00, 0x00},
                                         {0x07, 0x00, 0x80, 0x00, 0x80, 0x00, 0x00},
                                         {0x07, 0x02, 0x0A, 0x00, 0x80, 0x00, 0x80},
                                         {0x57, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80}};
-    saddle_output_t output = judged();
+    saddle_output_t output = sample_output();
     output.verdict.compared = false;
     assert_judgement(&output, not_compared);
 
@@ -272,7 +272,7 @@ static void test_what_was_not_compared_has_no_numbers(void)
                                            {0x07, 0xC4, 0x09, 0x48, 0xF4, 0x00, 0x00},
                                            {0x17, 0x02, 0x0A, 0xF4, 0x01, 0x38, 0xFF},
                                            {0x47, 0x00, 0x80, 0x00, 0x80, 0x30, 0xF8}};
-    output = judged();
+    output = sample_output();
     output.scores.valid = SADDLE_VALID_ALL & ~(uint32_t)SADDLE_VALID_STOP;
     output.verdict.recovery.found = false;
     output.verdict.recovery.margin_m = -0.2f;
@@ -313,7 +313,7 @@ static void test_balance_bytes(void)
 }
 
 /** Each part has a sign of its own that it is known: margin_known, a height, a step time, a ripple. */
-static void test_what_was_not_learned_has_no_numbers(void)
+static void test_values_that_were_not_learned_have_no_numbers(void)
 {
     const uint8_t nothing[4][7] = {{0x07, 0x00, 0x00, 0x00, 0x80, 0x00, 0x80},
                                    {0x07, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80},
@@ -359,8 +359,8 @@ static void test_process_bytes(void)
 
 static const uint8_t KEY[SADDLE_CMAC_LENGTH] = {1, 2, 3};
 
-/** A COMMAND under a code; whether it is obeyed. */
-static bool obeys(uint32_t session, uint16_t freshness)
+/** A COMMAND under a code; whether it is accepted. */
+static bool accepts(uint32_t session, uint16_t freshness)
 {
     saddle_cmac_key_t prepared;
     saddle_frame_t code;
@@ -371,14 +371,14 @@ static bool obeys(uint32_t session, uint16_t freshness)
     return accept(&command) == SADDLE_WIRE_COMMAND;
 }
 
-static void test_before_a_session_no_code_is_good(void)
+static void test_before_a_session_no_code_is_valid(void)
 {
     saddle_wire_demand_codes(&receiver, KEY);
-    TEST_ASSERT_FALSE(obeys(0, 1));
+    TEST_ASSERT_FALSE(accepts(0, 1));
     TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_code);
     saddle_wire_open_session(&receiver, 0);
-    TEST_ASSERT_TRUE(obeys(0, 2));
-    TEST_ASSERT_FALSE(obeys(1, 3));
+    TEST_ASSERT_TRUE(accepts(0, 2));
+    TEST_ASSERT_FALSE(accepts(1, 3));
 }
 
 /** A code is good for one command, and only with a freshness above the last. */
@@ -386,15 +386,15 @@ static void test_a_code_authenticates_one_command_once(void)
 {
     saddle_wire_demand_codes(&receiver, KEY);
     saddle_wire_open_session(&receiver, 7);
-    TEST_ASSERT_TRUE(obeys(7, 18));
+    TEST_ASSERT_TRUE(accepts(7, 18));
     const saddle_frame_t without_code = command_frame(3);
     TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE, accept(&without_code));
     TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_code);
-    TEST_ASSERT_FALSE(obeys(7, 3)); /* as counter 3 follows 18, as freshness it does not */
+    TEST_ASSERT_FALSE(accepts(7, 3)); /* as counter 3 follows 18, as freshness it does not */
     TEST_ASSERT_EQUAL_UINT32(2, receiver.bad_code);
-    TEST_ASSERT_FALSE(obeys(8, 20)); /* of another session */
+    TEST_ASSERT_FALSE(accepts(8, 20)); /* of another session */
     TEST_ASSERT_EQUAL_UINT32(3, receiver.bad_code);
-    TEST_ASSERT_TRUE(obeys(7, 21));
+    TEST_ASSERT_TRUE(accepts(7, 21));
     TEST_ASSERT_EQUAL_UINT32(0, receiver.bad_counter);
 }
 
@@ -411,10 +411,10 @@ static void test_when_a_session_is_over(void)
         TEST_ASSERT_EQUAL(tick == 24 || tick == 49,
                           saddle_wire_session_is_over(&receiver, &idle, tick));
     }
-    TEST_ASSERT_TRUE(obeys(7, 59999));
+    TEST_ASSERT_TRUE(accepts(7, 59999));
     TEST_ASSERT_FALSE(saddle_wire_session_is_over(&receiver, &commanded, 0));
     TEST_ASSERT_TRUE(saddle_wire_session_is_over(&receiver, &idle, 0));
-    TEST_ASSERT_TRUE(obeys(7, 60000));
+    TEST_ASSERT_TRUE(accepts(7, 60000));
     TEST_ASSERT_TRUE(saddle_wire_session_is_over(&receiver, &commanded, 0));
 }
 
@@ -425,21 +425,21 @@ int main(void)
     RUN_TEST(test_command_bytes);
     RUN_TEST(test_numbers_round_half_away_from_zero);
     RUN_TEST(test_numbers_beyond_the_range_saturate);
-    RUN_TEST(test_every_single_bit_error_is_refused);
-    RUN_TEST(test_frame_under_another_identifier_is_refused);
-    RUN_TEST(test_what_the_firmware_does_not_receive_is_malformed);
-    RUN_TEST(test_another_wire_version_is_refused);
+    RUN_TEST(test_every_single_bit_error_is_rejected);
+    RUN_TEST(test_frame_under_another_identifier_is_rejected);
+    RUN_TEST(test_messages_that_the_firmware_does_not_receive_are_malformed);
+    RUN_TEST(test_another_wire_version_is_rejected);
     RUN_TEST(test_counter_rule);
-    RUN_TEST(test_messages_count_apart);
+    RUN_TEST(test_messages_have_separate_counters);
     RUN_TEST(test_decoding_leaves_ages_and_other_parts);
     RUN_TEST(test_events_and_pitch_bytes);
     RUN_TEST(test_a_plan_that_is_not_valid_has_no_numbers);
-    RUN_TEST(test_judgement_bytes);
-    RUN_TEST(test_what_was_not_compared_has_no_numbers);
+    RUN_TEST(test_verdict_bytes);
+    RUN_TEST(test_results_that_were_not_compared_have_no_numbers);
     RUN_TEST(test_balance_bytes);
-    RUN_TEST(test_what_was_not_learned_has_no_numbers);
+    RUN_TEST(test_values_that_were_not_learned_have_no_numbers);
     RUN_TEST(test_process_bytes);
-    RUN_TEST(test_before_a_session_no_code_is_good);
+    RUN_TEST(test_before_a_session_no_code_is_valid);
     RUN_TEST(test_a_code_authenticates_one_command_once);
     RUN_TEST(test_when_a_session_is_over);
     return UNITY_END();

@@ -43,7 +43,7 @@ typedef struct {
 } quarter_t;
 
 typedef struct {
-    double toe_off_us, via_us, heel_us; /* when they are foretold to be */
+    double toe_off_us, via_us, heel_us; /* when they are predicted to be */
 } events_t;
 
 typedef struct {
@@ -522,7 +522,7 @@ static void check_finite(walk_t *walk, const saddle_plan_t *plan)
 
 /* ---- events -------------------------------------------------------------------------------- */
 
-static events_t foretold(const saddle_plan_t *plan, uint64_t us)
+static events_t predicted_events(const saddle_plan_t *plan, uint64_t us)
 {
     const events_t events = {(double)us + 1e6 * (double)plan->time_to_toe_off_s,
                              (double)us + 1e6 * (double)plan->time_to_via_point_s,
@@ -530,7 +530,7 @@ static events_t foretold(const saddle_plan_t *plan, uint64_t us)
     return events;
 }
 
-/* An event is foretold for the same instant as before. */
+/* An event is predicted for the same instant as before. */
 static void same_event(walk_t *walk, double was_us, double is_us, double left_s, double speed,
                        const char *what)
 {
@@ -539,10 +539,10 @@ static void same_event(walk_t *walk, double was_us, double is_us, double left_s,
     keep_larger(&used.event_s, 1e-6 * (is_us - was_us) / slack_s);
 }
 
-/* What was foretold still is, or has come to pass in its time. */
+/* What was predicted still is, or has come to pass in its time. */
 static void check_events(walk_t *walk, const saddle_plan_t *now, uint64_t us)
 {
-    const events_t is = foretold(now, us);
+    const events_t is = predicted_events(now, us);
     const events_t *was = &walk->events;
     const double speed = (double)fminf(now->speed_m_s, walk->plan.speed_m_s);
     if (now->mode == (uint8_t)SADDLE_MODE_STANDING) {
@@ -555,11 +555,11 @@ static void check_events(walk_t *walk, const saddle_plan_t *now, uint64_t us)
                    0.0, speed, "a via point out of its time");
     } else if (now->mode == walk->plan.mode && (speed > AT_REST_M_S || !steps(now))) {
         same_event(walk, was->via_us, is.via_us, (double)now->time_to_via_point_s,
-                   steps(now) ? speed : 1.0, "the next via point is foretold anew");
+                   steps(now) ? speed : 1.0, "the next via point is predicted anew");
     }
     if (same_step && now->mode == walk->plan.mode) {
         same_event(walk, was->toe_off_us, is.toe_off_us, (double)now->time_to_toe_off_s, speed,
-                   "the next toe-off is foretold anew");
+                   "the next toe-off is predicted anew");
     } else if (now->step_count != walk->plan.step_count) {
         same_event(walk, was->toe_off_us,
                    fmin(fmax(was->toe_off_us, (double)walk->plan_us), (double)us), 0.0, speed,
@@ -568,7 +568,7 @@ static void check_events(walk_t *walk, const saddle_plan_t *now, uint64_t us)
     if (same_step && now->mode == walk->plan.mode && now->time_to_heel_strike_s > 0.0f &&
         walk->plan.time_to_heel_strike_s > 0.0f) {
         same_event(walk, was->heel_us, is.heel_us, (double)now->time_to_heel_strike_s, speed,
-                   "the next heel strike is foretold anew");
+                   "the next heel strike is predicted anew");
     }
     expect(walk, (double)(now->time_to_heel_strike_s - now->time_to_toe_off_s) <= EVENT_S,
            "the heel strikes after the CoP arrives", (double)now->time_to_heel_strike_s,
@@ -601,7 +601,7 @@ static void watch(walk_t *walk, const saddle_plan_t *now, uint64_t us)
     check_distance(walk, now, dt_s);
     walk->plan = *now;
     walk->plan_us = us;
-    walk->events = foretold(now, us);
+    walk->events = predicted_events(now, us);
 }
 
 static bool same_float(float a, float b)
@@ -614,7 +614,7 @@ static bool same_point(const saddle_vec3_t *a, const saddle_vec3_t *b)
     return same_float(a->x, b->x) && same_float(a->y, b->y) && same_float(a->z, b->z);
 }
 
-/* The tick has the plan that was foretold for its time; its command may change what follows. */
+/* The tick has the plan that was predicted for its time; its command may change what follows. */
 static void check_tick(walk_t *walk, const saddle_plan_t *now)
 {
     const saddle_plan_t *was = &walk->plan;
@@ -625,7 +625,7 @@ static void check_tick(walk_t *walk, const saddle_plan_t *now)
                       same_float(was->foot_pitch_rad[0], now->foot_pitch_rad[0]) &&
                       same_float(was->foot_pitch_rad[1], now->foot_pitch_rad[1]) &&
                       was->origin_x_nm == now->origin_x_nm && was->step_count == now->step_count;
-    expect(walk, same, "a tick's plan is not what was foretold", (double)now->com_m.x,
+    expect(walk, same, "a tick's plan is not what was predicted", (double)now->com_m.x,
            (double)was->com_m.x);
     check_finite(walk, now);
     check_mode(walk, now);
@@ -633,7 +633,7 @@ static void check_tick(walk_t *walk, const saddle_plan_t *now)
         check_events(walk, now, walk->plan_us);
     }
     walk->plan = *now;
-    walk->events = foretold(now, walk->plan_us);
+    walk->events = predicted_events(now, walk->plan_us);
 }
 
 static void check_limits(walk_t *walk, const saddle_output_t *output)
@@ -664,7 +664,7 @@ static void tick(walk_t *walk, uint64_t us, bool first)
         walk->plan = output.plan;
         walk->plan_us = us;
         walk->first_way_m = (double)output.plan.com_m.x;
-        walk->events = foretold(&output.plan, us);
+        walk->events = predicted_events(&output.plan, us);
         return;
     }
     check_tick(walk, &output.plan);

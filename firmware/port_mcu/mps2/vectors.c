@@ -9,9 +9,9 @@ static void hang(void)
     }
 }
 
-/** The watchdog's warning, which comes out of whatever else hangs. Here a maker brings the machine
- *  into its safe state. There is no way back: the line stays up until the warning is cleared, which
- *  on this watchdog is a kick, and only a good tick may give one. */
+/** The watchdog's warning, which interrupts whatever hangs. A product brings its machine into the
+ *  safe state here. There is no way back: the line stays up until the warning is cleared, which on
+ *  this watchdog is a kick, and only a good tick may give one. */
 static void on_warning(void)
 {
     hang();

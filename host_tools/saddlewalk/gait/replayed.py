@@ -26,7 +26,7 @@ def score_row(time_s: float, scores: dict[str, float]) -> list[Cell]:
 
 
 def report(recording: Recording, gait: Gait, rows: list[list[Cell]]) -> list[str]:
-    """Lines of `name value unit`: the walk's from the markers, the rest from the firmware's scores."""
+    """Lines `name value unit`: the walk from the markers, the rest from the firmware's scores."""
     numbers = np.array([row[: len(NUMBER_COLUMNS)] for row in rows])
     columns = dict(zip(NUMBER_COLUMNS, numbers.T, strict=True))
     scored = np.isfinite(columns["mos_com_m"])
