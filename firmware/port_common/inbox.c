@@ -11,7 +11,7 @@ void saddle_inbox_init(saddle_inbox_t *inbox, saddle_source_t chosen)
 
 static void note_arrival(saddle_inbox_t *inbox, saddle_wire_message_t message, uint64_t time_us)
 {
-    inbox->came_us[message] = time_us;
+    inbox->received_us[message] = time_us;
     inbox->came |= 1u << message;
 }
 
@@ -66,8 +66,8 @@ static uint32_t age_us(const saddle_inbox_t *inbox, saddle_wire_message_t messag
     if ((inbox->came & 1u << message) == 0u) {
         return SADDLE_AGE_NEVER_US;
     }
-    const uint64_t came_us = inbox->came_us[message];
-    const uint64_t age = time_us > came_us ? time_us - came_us : 0;
+    const uint64_t received_us = inbox->received_us[message];
+    const uint64_t age = time_us > received_us ? time_us - received_us : 0;
     return age < SADDLE_AGE_NEVER_US ? (uint32_t)age : SADDLE_AGE_NEVER_US - 1u;
 }
 

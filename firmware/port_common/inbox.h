@@ -23,7 +23,7 @@ typedef struct {
     saddle_source_t authority; /**< the source that commands now */
     saddle_input_t input;      /**< ages as of the last saddle_inbox_read() */
     saddle_wire_receiver_t receiver;
-    uint64_t came_us[SADDLE_WIRE_MESSAGE_COUNT];
+    uint64_t received_us[SADDLE_WIRE_MESSAGE_COUNT];
     uint32_t came; /**< bits of the messages received so far */
     uint32_t set;  /**< bits of the messages with set_counter since the last read */
     uint8_t set_counter;

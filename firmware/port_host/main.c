@@ -124,7 +124,7 @@ static bool read_key(const char *path, uint8_t key[SADDLE_CMAC_LENGTH])
     return good;
 }
 
-static bool demand_codes(saddle_runner_t *runner, const char *path)
+static bool require_auth(saddle_runner_t *runner, const char *path)
 {
     uint8_t key[SADDLE_CMAC_LENGTH];
     if (path == NULL) {
@@ -137,7 +137,7 @@ static bool demand_codes(saddle_runner_t *runner, const char *path)
                 path);
         return false;
     }
-    saddle_runner_demand_codes(runner, key);
+    saddle_runner_require_auth(runner, key);
     return true;
 }
 
@@ -147,7 +147,7 @@ static int run(const saddle_options_t *options, ports_t *ports)
     saddle_runner_init(&runner, &options->config, options->lockstep, options->command_from,
                        &ports->bus, &ports->lcm, stop_pipe[0]);
     runner.lcm_commands_fd = ports->lcm_commands_fd;
-    if (!demand_codes(&runner, options->command_key)) {
+    if (!require_auth(&runner, options->command_key)) {
         return EXIT_BAD_INPUT;
     }
     /* After LCM has started its threads, which do not need this priority. */

@@ -82,7 +82,7 @@ static void tell_inputs(saddlewalk_status_t *message, const saddle_inbox_t *inbo
     message->frames_bad_counter = receiver->bad_counter;
     message->frames_bad_version = receiver->bad_version;
     message->other_version = receiver->other_version;
-    message->codes_demanded = receiver->guard.demanded;
+    message->codes_demanded = receiver->guard.required;
     message->frames_bad_code = receiver->bad_code;
 }
 

@@ -161,7 +161,7 @@ static void tick(saddle_runner_t *runner, uint64_t time_us)
     saddle_output_t output;
     const saddle_input_t *input = saddle_inbox_read(&runner->inbox, time_us);
     (void)saddle_tick(&runner->context, input, &output); /* the status is in the output */
-    if (saddle_wire_session_is_over(&runner->inbox.receiver, &output, runner->timing.ticks)) {
+    if (saddle_wire_session_expired(&runner->inbox.receiver, &output, runner->timing.ticks)) {
         open_session(runner);
     }
     send_session(runner);
@@ -254,10 +254,10 @@ void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, 
     saddle_inbox_init(&runner->inbox, command_from);
 }
 
-void saddle_runner_demand_codes(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH])
+void saddle_runner_require_auth(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH])
 {
     saddle_inbox_init(&runner->inbox, SADDLE_SOURCE_CAN);
-    saddle_wire_demand_codes(&runner->inbox.receiver, key);
+    saddle_wire_require_auth(&runner->inbox.receiver, key);
     open_session(runner);
 }
 

@@ -35,7 +35,7 @@ void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, 
                         int stop_fd);
 
 /** Require authenticated commands, docs/authentication.md; commands by LCM have no codes. */
-void saddle_runner_demand_codes(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH]);
+void saddle_runner_require_auth(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH]);
 
 /** Run until stop_fd is readable; a tick that has begun is finished. */
 void saddle_runner_run(saddle_runner_t *runner);

@@ -23,6 +23,6 @@ uint64_t saddle_clock_now_us(void);
 uint32_t saddle_clock_ticks_due(void);
 
 /** Feed the watchdog. Unless this is called again in time, it resets the controller. */
-void saddle_watchdog_kick(void);
+void saddle_watchdog_feed(void);
 
 #endif

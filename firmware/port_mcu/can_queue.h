@@ -9,7 +9,7 @@
 
 /** A classic data frame with an 11-bit identifier. */
 typedef struct {
-    uint64_t came_us; /**< of a received frame */
+    uint64_t received_us; /**< of a received frame */
     uint16_t id;
     uint8_t length; /**< 0 to 8 */
     uint8_t data[SADDLE_WIRE_LENGTH];

@@ -27,7 +27,7 @@ static void take_frames(saddle_controller_t *controller)
     for (uint32_t i = 0;
          i < SADDLE_CAN_QUEUE && !is_lockstep_due(controller) && saddle_can_receive(&frame); ++i) {
         saddle_inbox_take_frame(&controller->inbox, frame.id, frame.data, frame.length,
-                                controller->lockstep ? lockstep_us(controller) : frame.came_us);
+                                controller->lockstep ? lockstep_us(controller) : frame.received_us);
     }
 }
 
@@ -75,7 +75,7 @@ static void tick(saddle_controller_t *controller, uint64_t due_us)
     const uint64_t done_us = now_us(controller);
     saddle_timing_end(&controller->timing, next_us, done_us);
     if (status == SADDLE_OK && done_us <= next_us) {
-        saddle_watchdog_kick();
+        saddle_watchdog_feed();
     }
 }
 

@@ -22,7 +22,7 @@ typedef struct {
                         more came */
 } saddle_slcan_reader_t;
 
-/** Process a character. SADDLE_SLCAN_FRAME: frame was written, except came_us; else it was not. */
+/** Process a character. SADDLE_SLCAN_FRAME: frame was written, except received_us; else it was not. */
 saddle_slcan_event_t saddle_slcan_read(saddle_slcan_reader_t *reader, char character,
                                        saddle_can_frame_t *frame);
 

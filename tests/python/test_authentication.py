@@ -38,7 +38,7 @@ class Guarded:
         self._codec = codec
         self._sessions_told = 0
         self.receiver = ffi.new("saddle_wire_receiver_t *")
-        codec.saddle_wire_demand_codes(self.receiver, key)
+        codec.saddle_wire_require_auth(self.receiver, key)
         codec.saddle_wire_open_session(self.receiver, session)
 
     def accepts(self, *frames: can.Message) -> bool:

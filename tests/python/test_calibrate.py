@@ -573,7 +573,7 @@ def test_film_strip_needs_a_step_that_was_seen(write, tmp_path, capsys):
     walk = walk_of(PERSON, 1.0)
     unseen = dataclasses.replace(walk, com_m=walk.com_m * np.array([1, 1, np.nan]))
     arguments = ("follow", write(unseen), "--picture", str(tmp_path / "strip.png"))
-    assert "--picture: no step of walk.csv" in refusal(capsys, *arguments)
+    assert "--picture: no step of walk.csv" in error_of(capsys, *arguments)
 
 
 def test_what_cannot_be_left_out_is_rejected(write, tmp_path, capsys):

@@ -252,18 +252,18 @@ ROWS = [
     ("O2", "plan_at_max", "plan between ticks, -O2, maximum"),
     ("O2", "receive_max", "wire: receive 4 frames, -O2, maximum"),
     ("O2", "encode_max", "wire: encode the output, -O2, maximum"),
-    ("O2", "undefined_core", "needed of others by the core, -O2"),
-    ("O2", "undefined_wire", "needed of others by the wire, -O2"),
+    ("O2", "undefined_core", "external symbols of the core, -O2"),
+    ("O2", "undefined_wire", "external symbols of the wire, -O2"),
 ]
 
 INTRODUCTION = """\
 # What it costs
 
-Written by `make test-targets` from what it measured; `tests/targets/budgets.toml` holds the limits
+Written by `make test-targets`; `tests/targets/budgets.toml` holds the limits
 that fail the build, and `tests/targets/costs.py` defines each number. Instructions are
 counted in QEMU, call by call, callees included; they are not cycles. Flash is what a program links
 that calls the whole interface, code and constants, without the compiler's own routines. Stack is
-the deepest way through the call graph. {ticks} ticks were measured: a wearer who follows the plan
+the deepest path through the call graph. {ticks} ticks were measured: a wearer who follows the plan
 and is pushed, the same with absurd numbers, and with NaN. Most of them are standing ticks,
 which are cheap, so the median of a walk is more informative than that of all.
 """

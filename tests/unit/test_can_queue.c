@@ -15,7 +15,7 @@ void tearDown(void) {}
 
 static bool put(uint16_t id)
 {
-    const saddle_can_frame_t frame = {.id = id, .came_us = id + 7u, .length = 1, .data = {3}};
+    const saddle_can_frame_t frame = {.id = id, .received_us = id + 7u, .length = 1, .data = {3}};
     return saddle_can_queue_put(&queue, &frame);
 }
 
@@ -24,7 +24,7 @@ static void expect(uint16_t id)
     saddle_can_frame_t frame;
     TEST_ASSERT_TRUE(saddle_can_queue_take(&queue, &frame));
     TEST_ASSERT_EQUAL_UINT16(id, frame.id);
-    TEST_ASSERT_EQUAL_UINT64(id + 7u, frame.came_us);
+    TEST_ASSERT_EQUAL_UINT64(id + 7u, frame.received_us);
     TEST_ASSERT_EQUAL_UINT8(1, frame.length);
     TEST_ASSERT_EQUAL_UINT8(3, frame.data[0]);
 }

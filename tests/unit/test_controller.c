@@ -14,7 +14,7 @@ static uint32_t frames_sent, room, lost;
 static uint64_t now_us;
 static uint32_t sending_us; /* what each frame takes */
 static uint32_t ticks_due;
-static uint32_t kicks;
+static uint32_t feeds;
 static bool flood;
 
 bool saddle_can_receive(saddle_can_frame_t *frame)
@@ -50,16 +50,16 @@ uint32_t saddle_clock_ticks_due(void)
     return ticks_due;
 }
 
-void saddle_watchdog_kick(void)
+void saddle_watchdog_feed(void)
 {
-    ++kicks;
+    ++feeds;
 }
 
 void setUp(void)
 {
     memset(&coming, 0, sizeof coming);
     room = sizeof sent / sizeof sent[0];
-    frames_sent = lost = sending_us = ticks_due = kicks = 0;
+    frames_sent = lost = sending_us = ticks_due = feeds = 0;
     now_us = 0;
     flood = false;
     config = saddle_config_default(1.79f, 63.3f);
@@ -76,20 +76,21 @@ static void timer(uint32_t late_us)
     saddle_controller_step(&controller);
 }
 
-static void bring(const saddle_frame_t *from, uint64_t came_us)
+static void bring(const saddle_frame_t *from, uint64_t received_us)
 {
-    saddle_can_frame_t frame = {.came_us = came_us, .id = from->id, .length = sizeof from->data};
+    saddle_can_frame_t frame = {
+        .received_us = received_us, .id = from->id, .length = sizeof from->data};
     memcpy(frame.data, from->data, sizeof frame.data);
     TEST_ASSERT_TRUE(saddle_can_queue_put(&coming, &frame));
 }
 
-static void bring_set(uint8_t counter, uint64_t came_us)
+static void bring_set(uint8_t counter, uint64_t received_us)
 {
     const saddle_measurement_t measurement = {.com.height_m = 1.0f};
     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
     saddle_wire_encode_measurement(&measurement, counter, frames);
     for (size_t i = 0; i < SADDLE_WIRE_MEASURED_FRAMES; ++i) {
-        bring(&frames[i], came_us);
+        bring(&frames[i], received_us);
     }
 }
 
@@ -108,11 +109,11 @@ static void test_the_timer_makes_a_tick_due_once(void)
     TEST_ASSERT_EQUAL_HEX16(0x140, sent[frames_sent - 1u].id);
     TEST_ASSERT_EQUAL_UINT64(SADDLE_TICK_US, controller.inbox.input.time_us);
     TEST_ASSERT_EQUAL_UINT32(120, controller.timing.latency_us);
-    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+    TEST_ASSERT_EQUAL_UINT32(1, feeds);
     timer(0);
     TEST_ASSERT_EQUAL_UINT32(2 * SADDLE_WIRE_OUTPUT_FRAMES, frames_sent);
     TEST_ASSERT_EQUAL_UINT8(1, sent[frames_sent - 1u].data[1] & 15u);
-    TEST_ASSERT_EQUAL_UINT32(2, kicks);
+    TEST_ASSERT_EQUAL_UINT32(2, feeds);
 }
 
 static void test_a_late_tick_does_not_feed_the_watchdog(void)
@@ -120,13 +121,13 @@ static void test_a_late_tick_does_not_feed_the_watchdog(void)
     sending_us = 1000;
     const uint32_t latest_us = SADDLE_TICK_US - SADDLE_WIRE_OUTPUT_FRAMES * sending_us;
     timer(latest_us);
-    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+    TEST_ASSERT_EQUAL_UINT32(1, feeds);
     timer(latest_us + 1u);
-    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+    TEST_ASSERT_EQUAL_UINT32(1, feeds);
     TEST_ASSERT_EQUAL_UINT32(1, controller.timing.late_ticks);
     sending_us = 0;
     timer(0);
-    TEST_ASSERT_EQUAL_UINT32(2, kicks);
+    TEST_ASSERT_EQUAL_UINT32(2, feeds);
 }
 
 static void test_a_rejected_tick_does_not_feed_the_watchdog(void)
@@ -134,7 +135,7 @@ static void test_a_rejected_tick_does_not_feed_the_watchdog(void)
     timer(0);
     controller.context.last_time_us = UINT64_C(1) << 40;
     timer(0);
-    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+    TEST_ASSERT_EQUAL_UINT32(1, feeds);
     TEST_ASSERT_EQUAL_UINT8(SADDLE_ERROR_TIME, sent[frames_sent - 1u].data[1] >> 4);
 }
 
@@ -143,7 +144,7 @@ static void test_result_of_saddle_init_is_returned(void)
     config.body_mass_kg = -1.0f;
     TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_CONFIG, saddle_controller_init(&controller, &config, false));
     timer(0);
-    TEST_ASSERT_EQUAL_UINT32(0, kicks);
+    TEST_ASSERT_EQUAL_UINT32(0, feeds);
 }
 
 static void test_missed_ticks_are_counted_not_made_up_for(void)
@@ -182,7 +183,7 @@ static void test_frames_without_room_are_counted(void)
     room = 20;
     timer(0);
     TEST_ASSERT_EQUAL_UINT32(SADDLE_WIRE_OUTPUT_FRAMES - 20u, controller.not_sent);
-    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+    TEST_ASSERT_EQUAL_UINT32(1, feeds);
 }
 
 static void test_frames_lost_by_the_board_are_reported(void)
@@ -196,7 +197,7 @@ static void test_a_flood_does_not_delay_a_tick(void)
 {
     flood = true;
     timer(0);
-    TEST_ASSERT_EQUAL_UINT32(1, kicks);
+    TEST_ASSERT_EQUAL_UINT32(1, feeds);
 }
 
 static void test_in_lockstep_a_set_makes_a_tick_due(void)

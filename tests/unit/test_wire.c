@@ -373,7 +373,7 @@ static bool accepts(uint32_t session, uint16_t freshness)
 
 static void test_before_a_session_no_code_is_valid(void)
 {
-    saddle_wire_demand_codes(&receiver, KEY);
+    saddle_wire_require_auth(&receiver, KEY);
     TEST_ASSERT_FALSE(accepts(0, 1));
     TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_code);
     saddle_wire_open_session(&receiver, 0);
@@ -384,7 +384,7 @@ static void test_before_a_session_no_code_is_valid(void)
 /** A code is good for one command, and only with a freshness above the last. */
 static void test_a_code_authenticates_one_command_once(void)
 {
-    saddle_wire_demand_codes(&receiver, KEY);
+    saddle_wire_require_auth(&receiver, KEY);
     saddle_wire_open_session(&receiver, 7);
     TEST_ASSERT_TRUE(accepts(7, 18));
     const saddle_frame_t without_code = command_frame(3);
@@ -402,20 +402,20 @@ static void test_when_a_session_is_over(void)
 {
     const saddle_output_t commanded = {.status = SADDLE_OK};
     const saddle_output_t idle = {.faults = SADDLE_FAULT_COMMAND_STALE};
-    TEST_ASSERT_FALSE(saddle_wire_session_is_over(&receiver, &idle, 24));
-    saddle_wire_demand_codes(&receiver, KEY);
-    TEST_ASSERT_TRUE(saddle_wire_session_is_over(&receiver, &commanded, 0));
+    TEST_ASSERT_FALSE(saddle_wire_session_expired(&receiver, &idle, 24));
+    saddle_wire_require_auth(&receiver, KEY);
+    TEST_ASSERT_TRUE(saddle_wire_session_expired(&receiver, &commanded, 0));
     saddle_wire_open_session(&receiver, 7);
     for (uint32_t tick = 0; tick < 50; ++tick) {
-        TEST_ASSERT_FALSE(saddle_wire_session_is_over(&receiver, &commanded, tick));
+        TEST_ASSERT_FALSE(saddle_wire_session_expired(&receiver, &commanded, tick));
         TEST_ASSERT_EQUAL(tick == 24 || tick == 49,
-                          saddle_wire_session_is_over(&receiver, &idle, tick));
+                          saddle_wire_session_expired(&receiver, &idle, tick));
     }
     TEST_ASSERT_TRUE(accepts(7, 59999));
-    TEST_ASSERT_FALSE(saddle_wire_session_is_over(&receiver, &commanded, 0));
-    TEST_ASSERT_TRUE(saddle_wire_session_is_over(&receiver, &idle, 0));
+    TEST_ASSERT_FALSE(saddle_wire_session_expired(&receiver, &commanded, 0));
+    TEST_ASSERT_TRUE(saddle_wire_session_expired(&receiver, &idle, 0));
     TEST_ASSERT_TRUE(accepts(7, 60000));
-    TEST_ASSERT_TRUE(saddle_wire_session_is_over(&receiver, &commanded, 0));
+    TEST_ASSERT_TRUE(saddle_wire_session_expired(&receiver, &commanded, 0));
 }
 
 int main(void)

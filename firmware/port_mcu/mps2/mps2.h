@@ -25,7 +25,7 @@ void mps2_wake(void);
 /** Start the 80 ms timer. */
 void mps2_clock_start(void);
 
-/** Start the watchdog: after two and a half ticks without a kick it warns, for which the controller
+/** Start the watchdog: after two and a half ticks without being fed it warns, for which the controller
  *  hangs, and after five it resets. */
 void mps2_watchdog_start(void);
 

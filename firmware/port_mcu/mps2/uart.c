@@ -31,7 +31,7 @@ void mps2_uart_received(void)
     UART->interrupt = UART_RECEIVED;
     switch (saddle_slcan_read(&reader, (char)UART->data, &frame)) {
     case SADDLE_SLCAN_FRAME:
-        frame.came_us = saddle_clock_now_us();
+        frame.received_us = saddle_clock_now_us();
         (void)saddle_can_queue_put(&received, &frame); /* counts what is lost */
         break;
     case SADDLE_SLCAN_MALFORMED: malformed = malformed + 1u; break;

@@ -11,7 +11,7 @@ static void hang(void)
 
 /** The watchdog's warning, which interrupts whatever hangs. A product brings its machine into the
  *  safe state here. There is no way back: the line stays up until the warning is cleared, which on
- *  this watchdog is a kick, and only a good tick may give one. */
+ *  this watchdog means feeding it, and only a good tick may do that. */
 static void on_warning(void)
 {
     hang();

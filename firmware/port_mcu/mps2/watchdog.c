@@ -24,7 +24,7 @@ void mps2_watchdog_start(void)
     WATCHDOG_LOCK = 0u;
 }
 
-void saddle_watchdog_kick(void)
+void saddle_watchdog_feed(void)
 {
     WATCHDOG_LOCK = WATCHDOG_UNLOCK;
     WATCHDOG->clear = 1u;

@@ -209,8 +209,8 @@ static uint32_t code_of(const saddle_cmac_key_t *key, uint32_t session, uint16_t
 /** A code is checked once. */
 static bool is_authentic(saddle_wire_guard_t *guard, const uint8_t *command)
 {
-    if (!guard->demanded || !guard->waits) {
-        return !guard->demanded;
+    if (!guard->required || !guard->waits) {
+        return !guard->required;
     }
     guard->waits = false;
     const uint64_t code = bits_of(guard->frame);
@@ -565,10 +565,10 @@ void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uin
                NUMBER(MEASURED_RIGHT_Y, true, right_m.y));
 }
 
-void saddle_wire_demand_codes(saddle_wire_receiver_t *receiver,
+void saddle_wire_require_auth(saddle_wire_receiver_t *receiver,
                               const uint8_t key[SADDLE_CMAC_LENGTH])
 {
-    receiver->guard.demanded = true;
+    receiver->guard.required = true;
     saddle_cmac_prepare(&receiver->guard.key, key);
 }
 
@@ -581,13 +581,13 @@ void saddle_wire_open_session(saddle_wire_receiver_t *receiver, uint32_t session
 }
 
 /** The next commander may be new, and counts from 1. */
-bool saddle_wire_session_is_over(const saddle_wire_receiver_t *receiver,
+bool saddle_wire_session_expired(const saddle_wire_receiver_t *receiver,
                                  const saddle_output_t *output, uint32_t ticks)
 {
     const saddle_wire_guard_t *guard = &receiver->guard;
     const bool stale = (output->faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) != 0u;
     const bool renewed = ticks % IDLE_SESSION_TICKS == IDLE_SESSION_TICKS - 1u;
-    return guard->demanded && (!guard->opened || guard->freshness >= FRESHNESS_END ||
+    return guard->required && (!guard->opened || guard->freshness >= FRESHNESS_END ||
                                (stale && (guard->freshness > 0u || renewed)));
 }
 

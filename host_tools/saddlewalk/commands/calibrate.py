@@ -113,7 +113,7 @@ def _fit_table(fits: "list[Fit]") -> Any:
 
 def _missing_quantities(walks: "list[WalkMeasures]") -> list[str]:
     return [
-        f"{walk.source}: {quantity} unknown: {reason}"
+        f"{walk.source}: no {quantity}: {reason}"
         for walk in walks
         for quantity, reason in walk.missing.items()
     ]

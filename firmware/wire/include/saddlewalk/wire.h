@@ -42,8 +42,8 @@ extern "C" {
 #define SADDLE_WIRE_LENGTH 8u
 
 /** Frames of one output: the plan (10), the scores (5), the verdict (2), the margin and the learned
- *  walk (4), the process (3), and HEALTH as the last. SESSION is apart: it is sent only while codes
- *  are demanded. */
+ *  walk (4), the process (3), and HEALTH as the last. SESSION is separate: it is sent only while codes
+ *  are required. */
 #define SADDLE_WIRE_OUTPUT_FRAMES 29u
 
 /** Frames of one measurement: CoM, left foot, right foot. */
@@ -87,7 +87,7 @@ typedef struct {
 
 /** Authentication of COMMAND, docs/authentication.md. */
 typedef struct {
-    bool demanded;
+    bool required;
     bool opened; /**< a session; before the first no code is valid */
     saddle_cmac_key_t key;
     uint32_t session;                  /**< a code is valid in its session only */
@@ -128,17 +128,17 @@ saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint3
 
 /** From now on accept a COMMAND only after a COMMAND_CODE that authenticates it: none before there is
  *  a session. */
-void saddle_wire_demand_codes(saddle_wire_receiver_t *receiver,
+void saddle_wire_require_auth(saddle_wire_receiver_t *receiver,
                               const uint8_t key[SADDLE_CMAC_LENGTH]);
 
 /** Begin a session with an unpredictable number; freshness restarts. Codes of the previous
- *  session are rejected. When: saddle_wire_session_is_over(). */
+ *  session are rejected. When: saddle_wire_session_expired(). */
 void saddle_wire_open_session(saddle_wire_receiver_t *receiver, uint32_t session);
 
 /** Whether a tick is to open a new session: there is none, the freshness nears its end, or there are no
  *  commands. output: the tick's; ticks: how many came before it. Never while no codes are
- *  demanded. */
-bool saddle_wire_session_is_over(const saddle_wire_receiver_t *receiver,
+ *  required. */
+bool saddle_wire_session_expired(const saddle_wire_receiver_t *receiver,
                                  const saddle_output_t *output, uint32_t ticks);
 
 /** SESSION, for those who command; with every tick while there is a session. */
