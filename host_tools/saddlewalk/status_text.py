@@ -17,8 +17,8 @@ REJECTED = {
     "commands from other machines": "commands_foreign",
 }
 DROPPED = {
-    "frames that did not fit": "frames_no_room",
-    "frames without a link": "frames_no_link",
+    "frames without room": "frames_no_room",
+    "frames without link": "frames_no_link",
     "LCM messages": "messages_not_sent",
 }
 LONG_US = 10_000_000  # longer ages are given in seconds

@@ -327,8 +327,8 @@ def test_without_toes_the_steps_are_not_reported_and_the_rest_is(tmp_path, capsy
     assert set(found) == {*fitted, *population}
     assert {name: found[name] for name in population} == population
     printed = capsys.readouterr().out
-    assert "walk.trc does not give the step length: not both toes were seen" in printed
-    assert "walk.trc does not give the half the foot: not both toes were seen" in printed
+    assert "walk.trc: no step length: one or both toes were never visible" in printed
+    assert "walk.trc: no half foot length: one or both toes were never visible" in printed
 
 
 def moved(walk: Recording, **offset_m: np.ndarray) -> Recording:
@@ -343,9 +343,9 @@ def test_quantities_that_cannot_be_measured_are_reported_with_the_reason(write, 
     calibrated(tmp_path, write(moved(walk, com_m=up, heel_m=up, toe_m=up)))
     assert "CoM height: the heels do not stand at z = 0" in capsys.readouterr().out
     calibrated(tmp_path, write(dataclasses.replace(walk, toe_m=walk.heel_m)))
-    assert "half the foot: heel and toe are one point" in capsys.readouterr().out
+    assert "half foot length: heel and toe are one point" in capsys.readouterr().out
     calibrated(tmp_path, write(dataclasses.replace(walk, com_m=walk.com_m * (1, -1, 1))))
-    assert "lateral amplitude: the CoM is not nearer to the foot" in capsys.readouterr().out
+    assert "lateral amplitude: the CoM is not nearest to the foot" in capsys.readouterr().out
     short = walk_of(PERSON, 1.0, 1.4)
     assert "lateral_factor" in calibrated(tmp_path, write(short))
     printed = " ".join(capsys.readouterr().out.split())
@@ -377,7 +377,7 @@ def scaled(walk: Recording, factor: np.ndarray) -> Recording:
         (lambda walk: scaled(walk, np.array([0, 0, 1])), "no walk"),
         (
             lambda walk: dataclasses.replace(walk, time_s=walk.time_s / 4),
-            "walking speed 4 m/s is not human: 0.1 to 3",
+            "walking speed 4 m/s is not a person's: 0.1 to 3",
         ),
     ],
 )

@@ -80,7 +80,7 @@ def test_a_body_in_mujoco_walks_by_its_plan(tmp_path):
 
 
 @on_controller
-def test_in_real_time_its_timer_makes_the_ticks_and_ages_grow():
+def test_in_real_time_the_timer_drives_the_ticks_and_ages_grow():
     reader, sender, ticks = TickReader(), Sender(), []
     with qemu.running_controller(configuration({}), "realtime") as controller:
         bus = controller.bus

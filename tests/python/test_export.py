@@ -165,7 +165,7 @@ def test_unknown_logs_are_rejected_and_unknown_messages_reported(walk, tmp_path,
     log = lcm.EventLog(str(path), "w")
     log.write_event(1, "CAMERA", b"picture")
     log.close()
-    assert "on CAMERA, is of a type" in refused([str(path), "--format", "csv"], capsys)
+    assert "on CAMERA, is of a saddlewalk type" in refused([str(path), "--format", "csv"], capsys)
     with path.open("ab") as file:
         file.write((walk / "walk.lcmlog").read_bytes())
     assert main(["export", str(path), "--format", "csv"]) == 0

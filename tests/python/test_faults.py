@@ -349,8 +349,8 @@ def test_emulate_injects_faults_into_its_bus(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("fault", "options", "named"),
     [
-        (FAULT, ["--clock", "lockstep"], "--faults: firmware in lockstep waits"),
-        (FAULT.replace("loss", "stall"), [], "stall happens to the firmware"),
+        (FAULT, ["--clock", "lockstep"], "--faults needs --clock realtime"),
+        (FAULT.replace("loss", "stall"), [], "stall is a fault of the firmware"),
     ],
 )
 def test_faults_that_emulate_cannot_inject_are_rejected(tmp_path, capsys, fault, options, named):

@@ -262,7 +262,7 @@ def test_a_pair_of_markers_is_the_point_between_them(pair, tmp_path):
 def test_two_people_in_one_file_need_a_marker_mapping(tmp_path):
     both = markers() | {name.replace("Ann", "Bob"): xyz + 1e3 for name, xyz in markers().items()}
     path = trc_file(tmp_path / "walk.trc", both)
-    with pytest.raises(UserError, match="Ann:LASI and Bob:LASI may each be front"):
+    with pytest.raises(UserError, match="Ann:LASI and Bob:LASI could each be front"):
         load_walk(path)
     places = {"front": "ASI", "rear": "PSI", "heel": "HEE", "toe": "TOE"}
     mapping = {

@@ -335,7 +335,9 @@ def test_implausible_walks_are_reported(capsys, tmp_path):
     assert main(["replay", str(path)]) == 0
     printed = capsys.readouterr().err.splitlines()
     for quantity in ("walking speed 1200 m/s", "step length 650 m"):
-        assert any(f"millimetres.csv: {quantity} is not human" in line for line in printed), printed
+        assert any(f"millimetres.csv: {quantity} is not a person's" in line for line in printed), (
+            printed
+        )
 
 
 def test_a_replay_that_is_ended_ends_the_firmware(tmp_path):

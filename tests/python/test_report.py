@@ -23,7 +23,7 @@ from saddlewalk.transport.lcm_log import Event, LcmLog
 from saddlewalk.verdict import reason_words
 
 TICKS = 163  # of the walk of 13 s
-AGES = ("age of", "median (ms)", "95 % below (ms)", "oldest (ms)", "ticks before the first")
+AGES = ("age of", "median (ms)", "95 % below (ms)", "oldest (ms)", "ticks before the first one")
 PROBLEMS = ("fault or limit", "meaning", "times", "total (s)", "first at (s)", "last at (s)")
 ALARMS = ("start (s)", "duration (s)", "level", "lowest margin", "driven by", "reason")
 GAIT = ("what", "unit", "measured", "default, not calibrated", "published", "what it means")

@@ -230,8 +230,8 @@ def test_readings_are_the_rows_of_the_equations_page(monkeypatch, tmp_path):
 def test_without_trials_only_orendurff_is_drawn_with_a_note(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(figures, "draw_all", lambda simulations, trials: [])
     assert main(["reproduce", "--out", str(tmp_path)]) == 0
-    assert "only the points of Orendurff 2004" in capsys.readouterr().out
-    assert "only the points of Orendurff 2004" in (tmp_path / "paper.html").read_text()
+    assert "only by the points of Orendurff 2004" in capsys.readouterr().out
+    assert "only by the points of Orendurff 2004" in (tmp_path / "paper.html").read_text()
 
 
 def test_people_are_measured_as_they_walked(tmp_path):

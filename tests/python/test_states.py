@@ -82,7 +82,7 @@ def test_assumptions_and_implausible_values_are_reported(recorded, tmp_path, cap
     assert "walk.c3d, no unit in the file, mm assumed" in capsys.readouterr().err
     (tmp_path / "millimetres.csv").write_text(csv_text(Walk(1200.0, 650.0).recording()))
     assert main(["supervise", "--in", str(tmp_path / "millimetres.csv")]) == 0
-    assert "millimetres.csv: step length 650 m is not human" in capsys.readouterr().err
+    assert "millimetres.csv: step length 650 m is not a person's" in capsys.readouterr().err
 
 
 def test_markers_are_named_for_every_command_that_reads_a_recording(recorded, tmp_path, capsys):

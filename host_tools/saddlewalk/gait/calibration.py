@@ -213,9 +213,9 @@ def _vertical(walks: Sequence[WalkMeasures], paper: Any, config: Any) -> Fit:
 def _half_foot(walks: Sequence[WalkMeasures]) -> Fit:
     half_m = np.concatenate([walk.half_foot_m for walk in walks])
     if not len(half_m):
-        return Fit("half the foot", note=_why(walks, "half the foot"))
+        return Fit("half foot length", note=_why(walks, "half foot length"))
     note = "heel to metatarsus, halved"
-    return Fit("half the foot", {"cop_range_m": float(half_m.mean())}, len(half_m), note=note)
+    return Fit("half foot length", {"cop_range_m": float(half_m.mean())}, len(half_m), note=note)
 
 
 def _asymmetry(walks: Sequence[WalkMeasures], config: Any) -> Fit:

@@ -27,7 +27,7 @@ HUMAN = {
     "vertical amplitude": (0.002, 0.15, "m"),
     "lateral amplitude": (0.001, 0.15, "m"),
     "CoM height": (0.35, 1.4, "m"),
-    "half the foot": (0.03, 0.15, "m"),
+    "half foot length": (0.03, 0.15, "m"),
 }
 ONE_POINT_M = 0.01
 HEEL_HEIGHT_M = (-0.03, 0.15)  # of a heel marker while the foot lies flat
@@ -131,7 +131,7 @@ def _reject_implausible(measures: WalkMeasures, reasons: list[str]) -> None:
         ("vertical amplitude", measures.vertical_m),
         ("lateral amplitude", measures.lateral_m),
         ("CoM height", measures.com_top_m),
-        ("half the foot", measures.half_foot_m),
+        ("half foot length", measures.half_foot_m),
     ):
         if len(values):
             check_human_range(measures.source, quantity, float(np.mean(values)))
@@ -148,7 +148,7 @@ def _missing(recording: Recording, placed: bool, high: bool, grounded: bool) -> 
         "step width": None if placed else toes or flat,
         "vertical amplitude": None if high else step,
         "CoM height": step if not high else None if grounded else toes or off_ground,
-        "half the foot": toes or _one_point(recording),
+        "half foot length": toes or _one_point(recording),
     }
     return {quantity: reason for quantity, reason in reasons.items() if reason is not None}
 
