@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller coverage test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground samples physics bench-baselines format lint clean help
+.PHONY: build demo amalgamation controller coverage test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground site release samples physics bench-baselines format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -21,6 +21,12 @@ controller: cross-compiler build-cortex-m4f/build.ninja ## the image for saddlew
 playground: build build-wasm32/build.ninja ## the core in a page that needs nothing, build/playground.html
 	@$(BIN)/ninja -C build-wasm32 --quiet playground
 	@$(BIN)/python -m saddlewalk.view.playground build-wasm32/bin/playground.wasm build/playground.html
+
+site: playground .venv/installed-site ## the documentation as a site, build/site/index.html
+	@$(BIN)/python tools/site.py build/site
+
+release: site ## wheel, sources, site and playground of a clean tag, in build/release
+	@$(BIN)/python tools/release.py build/release
 
 cross-compiler:
 	@echo | arm-none-eabi-gcc --specs=picolibc.specs -x c -E - >/dev/null 2>&1 || \
@@ -119,7 +125,7 @@ build-wasm32/build.ninja: PRESET := wasm32
 
 # .venv/installed-EXTRA: this package, editable, and what its optional dependency EXTRA names.
 .venv/installed-build: .venv/bin/pip
-.venv/installed-test .venv/installed-samples .venv/installed-bench .venv/installed-physics: .venv/installed-build
+.venv/installed-test .venv/installed-site .venv/installed-samples .venv/installed-bench .venv/installed-physics: .venv/installed-build
 .venv/installed-%: pyproject.toml requirements.lock firmware/core/include/saddlewalk/version.h
 	@echo "Installing Python packages: $*"
 	@PIP_CONSTRAINT=requirements.lock $(PIP) install --editable .[$*]

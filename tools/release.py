@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+"""All files of a release, with checksums and a list of what they are made of.
+
+usage: tools/release.py OUT_FOLDER
+
+Refuses a checkout with changes and, unless CI=true tries it, one without the version's tag. The
+wheel is installed and tried from its file.
+"""
+
+import hashlib
+import json
+import os
+import re
+import runpy
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = runpy.run_path(str(ROOT / "tools/package.py"))
+VERSION = PACKAGE["version"]()
+BIN = Path(sys.executable).parent
+
+
+def run(*words: str | Path, **options) -> str:
+    done = subprocess.run(words, capture_output=True, text=True, check=False, **options)
+    if done.returncode:
+        sys.exit(f"saddlewalk: release: {' '.join(map(str, words))}\n{done.stdout}{done.stderr}")
+    return done.stdout.strip()
+
+
+def check_tag() -> None:
+    changed = run("git", "-C", ROOT, "status", "--porcelain")
+    if changed:
+        sys.exit(f"saddlewalk: release: commit or remove these first:\n{changed}")
+    tags = run("git", "-C", ROOT, "tag", "--points-at", "HEAD").split()
+    if f"v{VERSION}" not in tags and os.environ.get("CI") != "true":
+        sys.exit(f"saddlewalk: release: HEAD has no tag v{VERSION}: git tag v{VERSION}")
+
+
+def archive(path: Path, folder: Path) -> None:
+    """A tar.gz or zip of a folder under the archive's name, without times or owners."""
+    top = path.name.removesuffix(".tar.gz").removesuffix(".zip")
+    files = sorted(file for file in folder.rglob("*") if file.is_file())
+    if path.suffix == ".zip":
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as out:
+            for file in files:
+                entry = zipfile.ZipInfo(f"{top}/{file.relative_to(folder)}")
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                out.writestr(entry, file.read_bytes())
+        return
+
+    def bare(entry: tarfile.TarInfo) -> tarfile.TarInfo:
+        entry.mtime = entry.uid = entry.gid = 0
+        entry.uname = entry.gname = ""
+        return entry
+
+    with tarfile.open(path, "w:gz") as out:
+        for file in files:
+            out.add(file, f"{top}/{file.relative_to(folder)}", filter=bare)
+
+
+def core(folder: Path) -> None:
+    """One source, its public headers, an example and the licence."""
+    shutil.copytree(ROOT / "firmware/core/include", folder / "include")
+    (folder / "saddlewalk.c").write_text(PACKAGE["amalgamation"]())
+    shutil.copy(ROOT / "examples/minimal.c", folder)
+    shutil.copy(ROOT / "LICENSE", folder)
+
+
+def platformio(folder: Path) -> None:
+    """What library.json names."""
+    for name in json.loads((ROOT / "library.json").read_text())["export"]["include"]:
+        source = ROOT / name
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (shutil.copytree if source.is_dir() else shutil.copy)(source, folder / name)
+
+
+def made_of() -> str:
+    """CycloneDX: the Python packages that the tools are installed with."""
+    lines = (ROOT / "requirements.lock").read_text().splitlines()[1:]
+    components = [
+        {"type": "library", "name": name, "version": version, "purl": f"pkg:pypi/{name}@{version}"}
+        for name, version in (line.split("==") for line in lines)
+    ]
+    itself = {"type": "application", "name": "saddlewalk", "version": VERSION}
+    bom = {"bomFormat": "CycloneDX", "specVersion": "1.6", "version": 1}
+    bom |= {"metadata": {"component": itself}, "components": components}
+    return json.dumps(bom, indent=1)
+
+
+def changes() -> str:
+    """The changelog's newest section."""
+    text = (ROOT / "CHANGELOG.md").read_text()
+    return re.search(r"^## .*?(?=^## |\Z)", text, re.MULTILINE | re.DOTALL)[0]
+
+
+def try_wheel(wheel: Path) -> None:
+    """Installed from the file into an empty environment, it walks."""
+    with tempfile.TemporaryDirectory() as folder:
+        run(sys.executable, "-m", "venv", folder)
+        pip = [f"{folder}/bin/pip", "--disable-pip-version-check", "install", "-q"]
+        run(*pip, "-c", ROOT / "requirements.lock", wheel)
+        walk = [f"{folder}/bin/saddlewalk", "demo", "--clock", "lockstep", "--duration", "5"]
+        run(*walk, "--can", "udp:239.74.163.2:43177", cwd=folder)
+
+
+def main() -> None:
+    out = Path(sys.argv[1]).resolve()
+    check_tag()
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True)
+    run(BIN / "pip", "wheel", "-q", "--no-deps", "-w", out, ROOT)
+    (wheel,) = out.glob("*.whl")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, fill, end in (
+            ("core", core, "tar.gz"),
+            ("platformio", platformio, "tar.gz"),
+            ("arduino", PACKAGE["arduino"], "zip"),
+        ):
+            part = Path(folder) / name
+            if name != "arduino":
+                part.mkdir()
+            fill(part)
+            archive(out / f"saddlewalk-{name}-{VERSION}.{end}", part)
+    archive(out / f"saddlewalk-site-{VERSION}.tar.gz", ROOT / "build/site")
+    shutil.copy(ROOT / "build/playground.html", out / f"saddlewalk-playground-{VERSION}.html")
+    (out / "sbom.cdx.json").write_text(made_of())
+    (out / "CHANGES.md").write_text(changes())
+    try_wheel(wheel)
+    files = sorted(out.iterdir())
+    sums = (f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.name}" for file in files)
+    (out / "SHA256SUMS").write_text("\n".join(sums) + "\n")
+    print(f"{out}: {len(files)} files of saddlewalk {VERSION}, the wheel installed and tried")
+
+
+if __name__ == "__main__":
+    main()
