@@ -67,7 +67,7 @@ def calibrate(
         _half_foot(walks),
     ]
     fits.append(_asymmetry(walks, configuration(fields_of(fits))))
-    fits.append(_vertical(walks, paper, configuration(fields_of(fits))))
+    fits.append(_vertical(walks, paper, checked(fits)))
     given = {"body_height_m": height_m, "body_mass_kg": mass_kg}
     default = configuration({name: value for name, value in given.items() if value is not None})
     checked(fits)

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from saddlewalk.core import defined, library, model_of
+from saddlewalk.contract import TICK_S
+from saddlewalk.core import Core, library, model_of
 from saddlewalk.gait.measures import WalkMeasures
 from saddlewalk.gait.step_curves import StepCurve
+from saddlewalk.planning import steady
 
 
 @dataclass(frozen=True)
@@ -24,11 +26,10 @@ class TimedStep:
 
 
 def timed_steps(walk: WalkMeasures, config: Any) -> Iterator[TimedStep]:
-    """Every step of the walk, by the gait model of `config`."""
+    """Every step of the walk, by the gait model of a checked `config`."""
     model = model_of(config)
-    ceiling_m_s = model.body.speed_ceiling_m_s
-    limited_m_s = defined("SADDLE_CEILING_MARGIN", "core/src/model/model.h") * ceiling_m_s
-    speed_m_s = walk.speed_m_s if walk.speed_m_s < ceiling_m_s else limited_m_s
+    _, first = next(steady.walk(Core(config), walk.speed_m_s, 0, TICK_S))
+    speed_m_s = first.plan.speed_m_s  # limited to what is feasible
     width_m = library().saddle_step_width_m(model, speed_m_s)
     regressed_m = config.half_step_slope_s * speed_m_s + config.half_step_intercept_m
     factors = (config.step_length_factor_left, config.step_length_factor_right)
