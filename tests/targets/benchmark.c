@@ -1,12 +1,15 @@
-/* What there is to be measured, in one image: initialisations, then ticks of every kind.
+/* What there is to be measured, in one image: initialisations, ticks of every kind, then a device's
+ * joints.
  *
  * Prints the sizes, then one line for each tick in turn, `tick MODE LEVEL FAULTS`, by which the
  * counted instructions are separated. */
+#include "device.h"
 #include "sequences.h"
 
 #include <stdio.h>
 
 #define TICKS 4000u
+#define UPDATES 4000u
 
 static void print_sizes(void)
 {
@@ -15,6 +18,16 @@ static void print_sizes(void)
     printf("size input %u\n", (unsigned)sizeof(saddle_input_t));
     printf("size output %u\n", (unsigned)sizeof(saddle_output_t));
     printf("size receiver %u\n", (unsigned)sizeof(saddle_wire_receiver_t));
+    printf("size estimator %u\n", (unsigned)sizeof(saddle_estimator_t));
+}
+
+static void move_joints(bool absurd)
+{
+    static device_t device;
+    device_begin(&device, absurd);
+    while (device.updates < UPDATES) {
+        device_update(&device);
+    }
 }
 
 int main(void)
@@ -30,5 +43,7 @@ int main(void)
                    (unsigned)sequence.output.status);
         }
     }
+    move_joints(false);
+    move_joints(true);
     return 0;
 }

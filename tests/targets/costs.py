@@ -1,4 +1,4 @@
-"""What the core and the wire cost on a target: flash, memory, stack, instructions of a tick.
+"""What core, wire and joints cost on a target: flash, memory, stack, instructions of a tick.
 
 usage: costs.py measure TARGET BUILD_DIR PLUGIN COMPILER COMPILER_FLAGS EMULATOR...
        costs.py table OUT.md BUILD_DIR...
@@ -23,17 +23,22 @@ HERE = Path(__file__).parent
 LEVELS = ["Os", "O2"]
 CORE = "init tick join plan_at score_plan config_default config_check".split()
 WIRE = "accept decode_command decode_measured encode_output".split()
-# The order is count_calls' numbering.
-COUNTED = [
-    "saddle_init",
-    "saddle_plan_at",
-    "saddle_tick",
-    "saddle_wire_accept",
-    "saddle_wire_decode_command",
-    "saddle_wire_decode_measured",
-    "saddle_wire_encode_output",
-]
-RECEIVE = {"saddle_wire_accept", "saddle_wire_decode_command", "saddle_wire_decode_measured"}
+JOINTS = "legs_default legs_check inverse inverse_of_com forward".split()
+JOINTS += "estimator_default estimator_init estimator_update".split()
+JOINTS += "drive_default drive_check joint_commands".split()
+# Function -> what its calls are counted as. The order is count_calls' numbering.
+COUNTED = {
+    "saddle_init": "init",
+    "saddle_plan_at": "plan_at",
+    "saddle_tick": "tick",
+    "saddle_wire_accept": "receive",
+    "saddle_wire_decode_command": "receive",
+    "saddle_wire_decode_measured": "receive",
+    "saddle_wire_encode_output": "encode",
+    "saddle_inverse_of_com": "inverse",
+    "saddle_estimator_update": "estimate",
+    "saddle_joint_commands": "command",
+}
 MODES = ["standing", "starting", "walking", "stopping"]
 LEVEL_NAMES = ["unknown", "stable", "caution", "unstable"]
 MEDIAN = 1  # in the rows of by_kind()
@@ -83,7 +88,7 @@ def flash(tools: Tools, part: str, level: str, roots: Iterable[str]) -> int:
 
 
 def undefined(tools: Tools, part: str, level: str) -> list[str]:
-    """What an archive needs of others, but for the core's and the wire's own."""
+    """What an archive needs of others, but for our own."""
     listing = output_of([tools.tool("nm"), "-u", tools.library(part, level)])
     names = {line.split()[-1] for line in listing.splitlines() if line.lstrip().startswith("U ")}
     return sorted(name for name in names if not name.startswith("saddle_"))
@@ -115,20 +120,16 @@ def run_benchmark(tools: Tools, level: str, disassembly: str) -> tuple[list[str]
 
 def instructions(calls: list[str]) -> dict[str, list[int]]:
     """Counts of each call; what is received, summed up between two ticks."""
-    counts: dict[str, list[int]] = {
-        name: [] for name in ["init", "plan_at", "tick", "receive", "encode"]
-    }
+    counts: dict[str, list[int]] = {name: [] for name in COUNTED.values()}
+    names = list(COUNTED.values())
     received = 0
     for line in calls:
         index, count = map(int, line.split())
-        name = COUNTED[index]
-        if name in RECEIVE:
+        if names[index] == "receive":
             received += count
             continue
-        counts[name.removeprefix("saddle_").removeprefix("wire_").removesuffix("_output")] += [
-            count
-        ]
-        if name == "saddle_tick":
+        counts[names[index]].append(count)
+        if names[index] == "tick":
             counts["receive"].append(received)
             received = 0
     return counts
@@ -152,7 +153,7 @@ def measure_level(tools: Tools, level: str) -> tuple[Costs, dict[str, list[float
         sys.exit(f"{len(labels)} ticks were printed, {len(counts['tick'])} were counted")
     folders = [
         tools.build / "tests" / "targets" / "CMakeFiles" / f"{part}_{level}.dir"
-        for part in ("core", "wire")
+        for part in ("core", "wire", "joints")
     ]
     files = [file for folder in folders for file in folder.rglob("*.ci")]
     graph = stack.call_graph(files, disassembly, tools.tool("nm"), tools.image(level))
@@ -160,9 +161,11 @@ def measure_level(tools: Tools, level: str) -> tuple[Costs, dict[str, list[float
     costs: Costs = {
         "flash_core": flash(tools, "core", level, [f"saddle_{name}" for name in CORE]),
         "flash_wire": flash(tools, "wire", level, [f"saddle_wire_{name}" for name in WIRE]),
+        "flash_joints": flash(tools, "joints", level, [f"saddle_{name}" for name in JOINTS]),
         "stack_tick": graph.worst("saddle_tick"),
         "stack_init": graph.worst("saddle_init"),
         "stack_wire": max(graph.worst(f"saddle_wire_{name}") for name in WIRE),
+        "stack_joints": max(graph.worst(f"saddle_{name}") for name in JOINTS),
         "init": max(counts["init"]),
         "tick_median": statistics.median_low(counts["tick"]),
         "walking_median": kinds["walking"][MEDIAN],
@@ -170,8 +173,12 @@ def measure_level(tools: Tools, level: str) -> tuple[Costs, dict[str, list[float
         "plan_at_max": max(counts["plan_at"]),
         "receive_max": max(counts["receive"]),
         "encode_max": max(counts["encode"]),
+        "inverse_max": max(counts["inverse"]),
+        "estimate_max": max(counts["estimate"]),
+        "command_max": max(counts["command"]),
         "undefined_core": undefined(tools, "core", level),
         "undefined_wire": undefined(tools, "wire", level),
+        "undefined_joints": undefined(tools, "joints", level),
     }
     for median in ("tick", "walking"):
         costs[f"tick_max_to_{median}_median"] = round(
@@ -231,15 +238,19 @@ ROWS = [
     ("O2", "flash_core", "flash of the core, -O2"),
     ("Os", "flash_wire", "flash of the wire, -Os"),
     ("O2", "flash_wire", "flash of the wire, -O2"),
+    ("Os", "flash_joints", "flash of the joints, -Os"),
+    ("O2", "flash_joints", "flash of the joints, -O2"),
     ("bytes", "context", "context, bytes"),
     ("bytes", "config", "config (a copy is in the context)"),
     ("bytes", "input", "input"),
     ("bytes", "output", "output"),
     ("bytes", "receiver", "receiver of the wire"),
+    ("bytes", "estimator", "estimator of the joints"),
     ("O2", "stack_tick", "stack of a tick, -O2, bytes"),
     ("Os", "stack_tick", "stack of a tick, -Os"),
     ("O2", "stack_init", "stack of init, -O2"),
     ("O2", "stack_wire", "stack of the wire, -O2"),
+    ("O2", "stack_joints", "stack of the joints, -O2"),
     ("O2", "init", "init, -O2, instructions"),
     ("O2", "tick_median", "any tick, -O2, median"),
     ("O2", "walking_median", "tick of a walk, -O2, median"),
@@ -252,8 +263,12 @@ ROWS = [
     ("O2", "plan_at_max", "plan between ticks, -O2, maximum"),
     ("O2", "receive_max", "wire: receive 4 frames, -O2, maximum"),
     ("O2", "encode_max", "wire: encode the output, -O2, maximum"),
+    ("O2", "inverse_max", "joints under a CoM, -O2, maximum"),
+    ("O2", "estimate_max", "update of the estimator, -O2, maximum"),
+    ("O2", "command_max", "commands of all joints, -O2, maximum"),
     ("O2", "undefined_core", "external symbols of the core, -O2"),
     ("O2", "undefined_wire", "external symbols of the wire, -O2"),
+    ("O2", "undefined_joints", "external symbols of the joints, -O2"),
 ]
 
 INTRODUCTION = """\
