@@ -41,7 +41,7 @@ def test_what_was_measured_takes_the_place_of_the_default():
 @pytest.mark.parametrize(
     ("measured", "message"),
     [
-        ({"tigh_m": 0.4}, "tigh_m is no field of the legs; they have thigh_m, shank_m"),
+        ({"tigh_m": 0.4}, "tigh_m is not a field of the legs; fields are thigh_m, shank_m"),
         ({"shank_m": 4.0}, "shank_m = 4 must be in 0.1 to 0.8"),
         ({"knee_min_rad": 3.0}, "knee_min_rad = 3 does not fit the other fields of the legs"),
         ({"foot_kg": math.nan}, "foot_kg = nan must be in 0.05 to 30"),
