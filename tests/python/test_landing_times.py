@@ -1,5 +1,6 @@
 """Landings before or after their time: the plan takes over the foot then, without a jump."""
 
+import itertools
 import math
 
 import pytest
@@ -164,3 +165,33 @@ def test_nothing_changes_for_a_wearer_in_time_or_without_measurements(fields):
     assert alone.plan.step_count == walk.plan.step_count
     assert walk.com(alone.plan) == pytest.approx(walk.com(walk.plan), abs=1e-3)
     assert math.isclose(alone.plan.theta_rad, walk.plan.theta_rad, abs_tol=2e-3)
+
+
+def last_of_swings(**fields: float) -> list[tuple[float, float, float]]:
+    """Way that is left, height and forward speed of the swing foot, 60 ms before each landing."""
+    firmware, plan = Core(configuration(fields)), ffi().new("saddle_plan_t *")
+    seen, heights = [], []
+    for tick in range(150):
+        speed = SPEED_M_S if tick < 110 else None
+        told = firmware.tick(round(tick * TICK_S * 1e6), Command(speed), Measurement()).plan
+        for step in range(80):
+            time_us = round(tick * TICK_S * 1e6) + step * 1000
+            library().saddle_plan_at(firmware._context, time_us, plan)
+            foot = plan.foot_m[1 - plan.support]
+            heights.append(foot.z)
+            if told.speed_m_s > 0 and abs(plan.time_to_toe_off_s - 0.06) < 5e-4:
+                left_m = plan.landing_m.x - foot.x
+                if left_m > 0.04:  # the first swing is a slower half
+                    seen.append((left_m, foot.z, plan.swing_velocity_m_s.z))
+    steps = [abs(after - before) for before, after in itertools.pairwise(heights)]
+    assert max(steps) < 2e-3  # 1.4 m/s at the steepest
+    return seen
+
+
+def test_a_foot_can_come_down_from_above():
+    skimming, approaching = last_of_swings(), last_of_swings(swing_approach=0.3)
+    assert len(skimming) == len(approaching) >= 8
+    for (left_m, low_m, _), (same_m, height_m, rate_m_s) in zip(skimming, approaching, strict=True):
+        assert left_m == same_m and low_m < 0.005
+        assert height_m == pytest.approx(min(0.3 * left_m, 0.03), rel=1e-3)
+        assert rate_m_s < 0.0

@@ -10,7 +10,7 @@ static saddle_swing_state_t foot_at(const saddle_swing_t *line, float progress, 
 {
     saddle_swing_state_t foot;
     const saddle_swing_place_t place = {progress, rate_hz, speed_m_s,
-                                        saddle_swing_line(line, x_m, lateral)};
+                                        saddle_swing_line(line, x_m, lateral), 0.7f};
     saddle_foot_swing(line, &place, &foot);
     return foot;
 }
@@ -210,6 +210,31 @@ static void test_stretch_fades_out_in_the_second_half(void)
     ASSERT_SAME_FLOAT(0.0f, foot_at(&swing, 1.0f, 0.0f, beside, 0.0f, 1.7f).position_m.x);
 }
 
+/** On the slope near the landing, level before it, and as by the clearance alone before mid-swing. */
+static void test_foot_comes_down_on_a_slope(void)
+{
+    const saddle_sample_t lateral = {-0.05f, 0.0f};
+    saddle_swing_t sloping = swing;
+    sloping.approach = 0.25f;
+    sloping.approach_max_m = 0.03f;
+    for (float progress = 0.02f; progress < 1.0f; progress += 0.02f) {
+        const float x = 0.35f * progress; /* the foot at 0.7 of the progress */
+        const saddle_swing_state_t low = foot_at(&swing, progress, x, lateral, 1.0f, 1.0f);
+        const saddle_swing_state_t foot = foot_at(&sloping, progress, x, lateral, 1.0f, 1.0f);
+        const float slope_m = 0.25f * (0.7f - low.position_m.x);
+        const float least_m = progress <= 0.5f ? 0.0f : slope_m < 0.03f ? slope_m : 0.03f;
+        ASSERT_SAME_FLOAT(low.position_m.x, foot.position_m.x);
+        TEST_ASSERT_FLOAT_WITHIN(1e-7f, low.position_m.z > least_m ? low.position_m.z : least_m,
+                                 foot.position_m.z);
+        if (foot.position_m.z > low.position_m.z) {
+            TEST_ASSERT_FLOAT_WITHIN(1e-6f, slope_m < 0.03f ? -0.25f * foot.velocity_m_s.x : 0.0f,
+                                     foot.velocity_m_s.z);
+        }
+    }
+    const saddle_swing_state_t beyond = foot_at(&sloping, 1.0f, 0.5f, lateral, 1.0f, 1.0f);
+    ASSERT_SAME_FLOAT(0.0f, beyond.position_m.z);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -220,6 +245,7 @@ int main(void)
     RUN_TEST(test_foot_follows_the_path_s_width_to_any_line);
     RUN_TEST(test_slope_of_the_line_is_its_derivative);
     RUN_TEST(test_swing_and_its_velocity_whole_and_half);
+    RUN_TEST(test_foot_comes_down_on_a_slope);
     RUN_TEST(test_foot_leaves_where_it_stood_and_lands_on_the_line_both_at_rest);
     return UNITY_END();
 }

@@ -76,6 +76,8 @@ typedef struct {
     float swing_begin; /**< where the swing foot's way along x begins, in swings since lift-off; */
     float swing_end;   /**< where it ends; */
     float swing_skew;  /**< and how late it comes; 0: the line through stance foot and CoM, [E44] */
+    float swing_approach;       /**< it comes down no flatter than this slope; 0: as high as the
+                                     clearance alone makes it, [E10] */
     float double_support_share; /**< of a step, after its landing: both feet carry, [E39] */
     float cop_enter;            /**< where the CoP enters a foot, of cop_range_m, */
     float cop_leave;            /**< and where it leaves it, [E39] */

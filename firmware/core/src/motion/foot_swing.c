@@ -40,6 +40,18 @@ saddle_jerk_t saddle_swing_share(const saddle_swing_profile_t *profile, float pr
     return (saddle_jerk_t){profile->scale * jerk.value, profile->scale * jerk.slope * steepness};
 }
 
+/* [E10] Comes down from above: no lower than a slope of the way that is left. */
+static void approach(const saddle_swing_t *swing, float left_m, saddle_swing_state_t *foot)
+{
+    const bool above = left_m * swing->approach > swing->approach_max_m;
+    const float height_m =
+        above ? swing->approach_max_m : saddle_larger(left_m, 0.0f) * swing->approach;
+    if (height_m > foot->position_m.z) {
+        foot->position_m.z = height_m;
+        foot->velocity_m_s.z = above ? 0.0f : -swing->approach * foot->velocity_m_s.x;
+    }
+}
+
 /* [E9] [E44] The offset fades out in the first half, the stretch in the second. */
 void saddle_foot_swing(const saddle_swing_t *swing, const saddle_swing_place_t *place,
                        saddle_swing_state_t *foot)
@@ -60,4 +72,7 @@ void saddle_foot_swing(const saddle_swing_t *swing, const saddle_swing_place_t *
         foot->velocity_m_s.x -= 2.0f * swing->stretch_m * gone.slope * air_rate_hz;
     }
     swing_height(air, air_rate_hz, swing->clearance_m, foot);
+    if (air > 0.5f) {
+        approach(swing, place->landing_x_m - foot->position_m.x, foot);
+    }
 }

@@ -25,6 +25,7 @@ typedef struct {
     float progress, rate_hz; /**< its rate of change */
     float speed_m_s;         /**< of the CoM */
     saddle_sample_t way;     /**< along x, and its change with the CoM's */
+    float landing_x_m;       /**< where the foot lands, in the second half of its swing */
 } saddle_swing_place_t;
 
 /** [E9] [E10] The foot. */

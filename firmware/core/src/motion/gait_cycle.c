@@ -24,6 +24,9 @@
  * the planned path's slope the CoM would leave the feet sideways. */
 #define LANDING_STRETCH_MAX 2.0f
 
+/* A swing foot comes down on a slope from no higher. */
+#define APPROACH_MAX_M 0.03f
+
 /* A foot is waited for until the CoM is further ahead by no more than this share of the quarter. */
 #define LATE_SHARE_MAX 0.5f
 
@@ -188,6 +191,8 @@ static void lift_off(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_
     swing->lift_progress = saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f;
     swing->land_progress = cycle->last_swing ? 0.5f : 1.0f;
     swing->clearance_m = model->config.swing_clearance_m;
+    swing->approach = model->config.swing_approach;
+    swing->approach_max_m = saddle_smaller(APPROACH_MAX_M, swing->clearance_m);
     swing->line_y_m = swing_line_y_m(cycle, model, foot, speed_m_s);
     swing->offset_m.x = lifted_m.x - swing_way(cycle, model, cycle->x_m, phase).value;
     swing->offset_m.y = lifted_m.y - swing->line_y_m;
@@ -381,6 +386,7 @@ static void swing_foot(const saddle_cycle_t *cycle, const saddle_model_t *model,
         .rate_hz = 0.5f * speed_m_s / cycle->quarter.length_m,
         .speed_m_s = speed_m_s,
         .way = swing_way(cycle, model, saddle_smaller(x_m, cycle->quarter.length_m), phase),
+        .landing_x_m = saddle_cycle_before_landing(cycle) ? 2.0f * cycle->quarter.length_m : 0.0f,
     };
     saddle_foot_swing(&cycle->swing, &place, foot);
 }

@@ -100,7 +100,8 @@ typedef struct {
     saddle_vec2_t offset_m;             /**< from the line to where it lifted off: fades out */
     float stretch_m; /**< along x, from its way in this quarter to that in the last: fades out */
     float clearance_m;
-    float path_width_m; /**< of the quarter whose lateral path is followed */
+    float approach, approach_max_m; /**< slope on which it comes down, and from what height */
+    float path_width_m;             /**< of the quarter whose lateral path is followed */
 } saddle_swing_t;
 
 typedef struct {
