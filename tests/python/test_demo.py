@@ -307,7 +307,7 @@ def test_emulate_gives_up_if_the_firmware_does_not_receive(ports, capsys, monkey
     with running_host(f"--can={ports[1]}", "--lcm=none"):
         assert main(["emulate", *ports]) == 2
     shown = capsys.readouterr().err
-    assert shown.count("\n") == 1 and "not do as commanded" in shown and "--lcm" in shown
+    assert shown.count("\n") == 1 and "does not follow the commands" in shown and "--lcm" in shown
 
 
 @pytest.fixture
