@@ -183,6 +183,76 @@ static void test_decoding_leaves_ages_and_other_parts(void)
 
 /** Written out by hand from the DBC: stopping in bits 4 and 5 of byte 1; 0.25 s, the end of the
  *  range for what never comes, not available for what is no number; -0.1 rad, 0.3 rad, 2 mm. */
+/** The three numbers of a frame, and the half byte beside the counter. */
+static void expect_frame(const saddle_frame_t *frame, uint16_t id, uint8_t half_byte,
+                         const int16_t numbers[3])
+{
+    TEST_ASSERT_EQUAL_HEX16(id, frame->id);
+    TEST_ASSERT_EQUAL_HEX8(half_byte, frame->data[1] >> 4);
+    for (size_t i = 0; i < 3u; ++i) {
+        const uint32_t raw = frame->data[2u + 2u * i] | (uint32_t)frame->data[3u + 2u * i] << 8;
+        TEST_ASSERT_EQUAL_INT16_MESSAGE(numbers[i], (int16_t)(uint16_t)raw, "in units of the DBC");
+    }
+}
+
+/** Each number of the plan at its place, in units of the DBC: 0.1 mm, 0.2 mm/s, 0.2 mrad. */
+static void test_plan_frames(void)
+{
+    static const int16_t expected[8][3] = {
+        {1000, -2000, 10000}, {6000, -500, 750},    {3000, 1100, 0},    {-3000, -1100, 200},
+        {10000, -250, 1500},  {7000, -1050, 10203}, {2500, 750, 12000}, {15000, 7000, 513},
+    };
+    const saddle_wire_health_t health = {.late_ticks = 0};
+    saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
+    const saddle_output_t output = {
+        .plan = {.valid = true,
+                 .phase = 2,
+                 .support = SADDLE_RIGHT,
+                 .step_count = 513,
+                 .theta_rad = 3.0f,
+                 .speed_m_s = 1.2f,
+                 .step_length_m = 0.7f,
+                 .com_m = {0.1f, -0.2f, 1.0f},
+                 .com_velocity_m_s = {1.2f, -0.1f, 0.15f},
+                 .foot_m = {{0.3f, 0.11f, 0.0f}, {-0.3f, -0.11f, 0.02f}},
+                 .swing_velocity_m_s = {2.0f, -0.05f, 0.3f},
+                 .leg_length_m = 1.0203f,
+                 .toe_off_rad = 0.5f,
+                 .heel_strike_rad = 0.15f,
+                 .landing_m = {0.7f, -0.105f}}};
+    saddle_wire_encode_output(&output, &health, 9, frames);
+    for (size_t i = 0; i < 7u; ++i) {
+        expect_frame(&frames[i], (uint16_t)(0x120u + i), 0, expected[i]);
+    }
+    expect_frame(&frames[7], 0x127, 0x1u | 0x1u << 1 | 0x2u << 2, expected[7]);
+}
+
+static void test_a_command_is_decoded(void)
+{
+    const saddle_frame_t frame = command_frame(1);
+    saddle_command_t command = {.mode = 9};
+    saddle_wire_decode_command(frame.data, &command);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_COMMAND_WALK, command.mode);
+    TEST_ASSERT_EQUAL_FLOAT(1.2f, command.speed_m_s);
+    TEST_ASSERT_EQUAL_FLOAT(0.1745f, command.heel_strike_rad);
+}
+
+static void test_a_measured_com_is_decoded(void)
+{
+    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
+    const saddle_measurement_t sent = {.com = {.height_m = 1.25f, .velocity_m_s = {1.5f, -0.5f}},
+                                       .foot = {{.cop_m = {-0.25f, 0.125f}}}};
+    saddle_measurement_t received = {.com.age_us = 11};
+    saddle_wire_encode_measurement(&sent, 0, frames);
+    saddle_wire_decode_measured(SADDLE_WIRE_MEASURED_COM, frames[0].data, &received);
+    saddle_wire_decode_measured(SADDLE_WIRE_MEASURED_LEFT, frames[1].data, &received);
+    TEST_ASSERT_EQUAL_FLOAT(1.25f, received.com.height_m);
+    TEST_ASSERT_EQUAL_FLOAT(1.5f, received.com.velocity_m_s.x);
+    TEST_ASSERT_EQUAL_FLOAT(-0.5f, received.com.velocity_m_s.y);
+    TEST_ASSERT_EQUAL_FLOAT(0.125f, received.foot[SADDLE_LEFT].cop_m.y);
+    TEST_ASSERT_EQUAL_UINT32(11, received.com.age_us);
+}
+
 static void test_events_and_pitch_bytes(void)
 {
     const uint8_t events[7] = {0x37, 0xFA, 0x00, 0xFF, 0x7F, 0x00, 0x80};
@@ -432,6 +502,9 @@ int main(void)
     RUN_TEST(test_counter_rule);
     RUN_TEST(test_messages_have_separate_counters);
     RUN_TEST(test_decoding_leaves_ages_and_other_parts);
+    RUN_TEST(test_plan_frames);
+    RUN_TEST(test_a_command_is_decoded);
+    RUN_TEST(test_a_measured_com_is_decoded);
     RUN_TEST(test_events_and_pitch_bytes);
     RUN_TEST(test_a_plan_that_is_not_valid_has_no_numbers);
     RUN_TEST(test_verdict_bytes);
