@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller coverage test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground site release samples physics bench-baselines format lint clean help
+.PHONY: build demo amalgamation controller coverage prove fuzz mutants test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground site release samples physics bench-baselines format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -52,6 +52,21 @@ coverage: build-coverage/build.ninja .venv/installed-test ## every branch and co
 	@$(BIN)/ninja -C build-coverage --quiet tests
 	@$(BIN)/ctest --preset coverage --quiet --output-junit reports/ctest.xml
 	@$(BIN)/python tests/coverage/gate.py build-coverage
+
+prove: build ## run-time errors for any input, by Frama-C's Eva
+	@$(BIN)/python tests/proof/prove.py build/firmware/wire/signals
+
+fuzz: build-fuzz/build.ninja ## random inputs under sanitizers; make fuzz HOURS=8, or SECONDS=60 in all
+	@$(BIN)/ninja -C build-fuzz --quiet fuzz_targets
+	@$(BIN)/python tests/fuzz/run.py build-fuzz $(if $(HOURS),$$(($(HOURS) * 3600)),$(SECONDS))
+
+mutants: build .venv/installed-test ## whether the unit tests notice changed code; SAMPLE=0: every change
+	@$(BIN)/ninja -C build --quiet tests
+	@$(BIN)/python tests/mutants/mutate.py wire $(or $(SAMPLE),60) $(SEED) 90
+	@$(BIN)/python tests/mutants/mutate.py core $(or $(SAMPLE),150) $(SEED) 75
+
+SECONDS := 60
+SEED := $(shell date +%j)
 
 test-socketcan: build .venv/installed-test ## the tests on the kernel's own CAN, in User Mode Linux where need be
 	@tools/vcan/with-vcan build/socketcan $(BIN)/pytest -m socketcan -p no:cacheprovider \
@@ -113,6 +128,7 @@ build/build.ninja: PRESET := release
 build-clang/build.ninja: PRESET := clang
 build-sanitize/build.ninja: PRESET := sanitize
 build-coverage/build.ninja: PRESET := coverage
+build-fuzz/build.ninja: PRESET := fuzz
 build-cortex-m4f/build.ninja: PRESET := cortex-m4f
 build-wasm32/build.ninja: PRESET := wasm32
 %/build.ninja: .venv/installed-build CMakePresets.json

@@ -89,7 +89,7 @@ saddle_status_t saddle_controller_init(saddle_controller_t *controller,
 
 void saddle_controller_step(saddle_controller_t *controller)
 {
-    uint64_t due_us;
+    uint64_t due_us = 0;
     take_frames(controller);
     if (is_due(controller, &due_us)) {
         tick(controller, due_us);

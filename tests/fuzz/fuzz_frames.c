@@ -72,7 +72,7 @@ static void command(saddle_inbox_t *inbox, fuzz_bytes_t *bytes)
     const uint8_t flip = fuzz_byte(bytes);
     wanted.speed_m_s = fuzz_between(bytes, -3.0f, 3.0f);
     saddle_cmac_prepare(&key, secret);
-    saddle_wire_demand_codes(receiver, secret);
+    saddle_wire_require_auth(receiver, secret);
     saddle_wire_open_session(receiver, session);
     memset(receiver->alive, 0, sizeof receiver->alive);
     saddle_wire_encode_command(&wanted, fuzz_byte(bytes), &command);

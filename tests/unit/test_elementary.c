@@ -373,6 +373,8 @@ static void test_ends(void)
     expect_outside(saddle_cos, SADDLE_TWO_PI, 1.0f, 1.0f, 1.0f);
     expect_outside(saddle_asin, 1.0f, -SADDLE_HALF_PI, SADDLE_HALF_PI, 0.0f);
     expect_outside(saddle_exp, 88.0f, 0.0f, EXP_GREATEST, 0.0f);
+    expect_result(saddle_log, -1.0f, 0.0f);
+    expect_result(saddle_log, NAN, 0.0f);
     expect_outside(saddle_erf, ERF_SATURATION, -1.0f, 1.0f, 0.0f);
     expect_outside(saddle_min_jerk, 1.0f, 0.0f, 1.0f, 0.0f);
 }

@@ -103,6 +103,9 @@ static void test_from_rest_and_at_no_rate_everything_stays_a_number(void)
 {
     profile = profile_of(1.0f, 1.0f, 0.0f);
     TEST_ASSERT_TRUE(saddle_profile_advance(&profile, 80000) == profile.speed * 80000);
+    profile.speed -= 1; /* a difference that is none as a float */
+    (void)saddle_profile_advance(&profile, 80000);
+    TEST_ASSERT_TRUE(profile.speed == profile.target);
     profile = profile_of(0.0f, 1.0f, 0.5f);
     TEST_ASSERT_TRUE(saddle_profile_speed_after(&profile, 0.0f) == 0);
     profile = profile_of(0.0f, 1.0f, 1.0e-45f); /* the speed after 0.1 m underflows */

@@ -705,6 +705,74 @@ static void test_plan_at_of_a_steady_walk_is_the_next_ticks_in_every_field(void)
     }
 }
 
+/* ---- saddle_reference_after() --------------------------------------------------------------- */
+
+static saddle_reference_t reference_after(float after_s)
+{
+    saddle_reference_t reference;
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK,
+                          saddle_reference_after(&context, &output.plan, after_s, &reference));
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.0,
+                              (double)reference.load[0] + (double)reference.load[1]);
+    return reference;
+}
+
+static void test_reference_at_once_is_the_plan_s(void)
+{
+    join();
+    for (uint64_t t = 0; t < 2000000u; t += 80000u) {
+        tick_at(t);
+        const saddle_reference_t now = reference_after(0.0f);
+        ASSERT_SAME_FLOAT(output.plan.reference.xcom_m.x, now.xcom_m.x);
+        ASSERT_SAME_FLOAT(output.plan.reference.cop_m.y, now.cop_m.y);
+        ASSERT_SAME_FLOAT(output.plan.reference.load[SADDLE_LEFT], now.load[SADDLE_LEFT]);
+    }
+}
+
+/* Also over the end of a first swing: a step of 5 ms, and no further than at 6 m/s. */
+static void test_reference_goes_on_without_a_jump_from_standing_on(void)
+{
+    for (uint64_t t = 0; t < 4000000u; t += 80000u) {
+        input.command = (saddle_command_t){SADDLE_COMMAND_WALK, 1.2f, 0.17f};
+        tick_at(t);
+        saddle_reference_t before = reference_after(0.0f);
+        for (int k = 1; k <= 100; k++) {
+            const saddle_reference_t after = reference_after(0.005f * (float)k);
+            TEST_ASSERT_DOUBLE_WITHIN(0.03, (double)before.xcom_m.x, (double)after.xcom_m.x);
+            TEST_ASSERT_DOUBLE_WITHIN(0.03, (double)before.xcom_m.y, (double)after.xcom_m.y);
+            before = after;
+        }
+    }
+}
+
+static void test_reference_of_another_time_or_no_plan_is_rejected(void)
+{
+    saddle_reference_t reference;
+    join();
+    tick_at(0);
+    const float times_s[] = {-0.001f, 0.501f, NAN};
+    for (size_t i = 0; i < COUNT_OF(times_s); i++) {
+        memset(&reference, 0xA5, sizeof reference);
+        TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME, saddle_reference_after(&context, &output.plan,
+                                                                        times_s[i], &reference));
+        ASSERT_SAME_FLOAT(0.0f, reference.xcom_m.x);
+    }
+    saddle_plan_t plan = output.plan;
+    plan.support = 2; /* no foot */
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME,
+                          saddle_reference_after(&context, &plan, 0.1f, &reference));
+    plan.valid = false;
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_TIME,
+                          saddle_reference_after(&context, &plan, 0.1f, &reference));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_reference_after(NULL, &plan, 0.1f, &reference));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL,
+                          saddle_reference_after(&context, NULL, 0.1f, &reference));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_reference_after(&context, &plan, 0.1f, NULL));
+    memset(&context, 0, sizeof context);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_UNINITIALISED,
+                          saddle_reference_after(&context, &plan, 0.1f, &reference));
+}
+
 static void test_plan_at_beyond_its_span_is_rejected(void)
 {
     saddle_plan_t plan;
@@ -1015,6 +1083,9 @@ int main(void)
     RUN_TEST(test_plan_at_is_the_next_ticks_plan_bit_for_bit);
     RUN_TEST(test_plan_at_of_a_steady_walk_is_the_next_ticks_in_every_field);
     RUN_TEST(test_plan_at_beyond_its_span_is_rejected);
+    RUN_TEST(test_reference_at_once_is_the_plan_s);
+    RUN_TEST(test_reference_goes_on_without_a_jump_from_standing_on);
+    RUN_TEST(test_reference_of_another_time_or_no_plan_is_rejected);
     RUN_TEST(test_join_needs_a_walk);
     RUN_TEST(test_wearer_who_follows_the_plan_never_departs_from_it);
     RUN_TEST(test_standing_plan_is_no_reference);

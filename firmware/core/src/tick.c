@@ -248,7 +248,8 @@ saddle_status_t saddle_reference_after(const saddle_context_t *context, const sa
     if (context->initialised != INITIALISED) {
         return SADDLE_ERROR_UNINITIALISED;
     }
-    if (!plan->valid || !(after_s >= 0.0f && after_s <= REFERENCE_AHEAD_MAX_S)) {
+    if (!plan->valid || plan->support > (uint8_t)SADDLE_RIGHT ||
+        !(after_s >= 0.0f && after_s <= REFERENCE_AHEAD_MAX_S)) {
         return SADDLE_ERROR_TIME;
     }
     saddle_reference(&context->model, plan, after_s, reference);

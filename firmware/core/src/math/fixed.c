@@ -78,12 +78,17 @@ float saddle_speed_to_m_s(saddle_fixed_t speed)
     return (float)(int32_t)(in_range / ((int64_t)1 << 13)) * (1.0f / 536870912.0f);
 }
 
+saddle_fixed_t saddle_speed_sum(saddle_fixed_t a, saddle_fixed_t b)
+{
+    return limited_integer(a + b, SPEED_MAX);
+}
+
 saddle_fixed_t saddle_speed_change(float rate_m_s2, uint32_t dt_us)
 {
     const int32_t rate = (int32_t)(limited(rate_m_s2, RATE_MAX_M_S2) * TWO_POW_27);
     const int64_t product = rate * (int64_t)(dt_us < DT_MAX_US ? dt_us : DT_MAX_US);
     const int64_t upper = product / ((int64_t)1 << 27);
-    const int64_t lower = product - upper * ((int64_t)1 << 27);
+    const int64_t lower = product % ((int64_t)1 << 27);
     return upper * SPEED_PER_2_POW_MINUS_27_UM_S / ((int64_t)1 << 9) +
            lower * SPEED_PER_2_POW_MINUS_27_UM_S / ((int64_t)1 << 36);
 }

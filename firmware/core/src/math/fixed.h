@@ -22,6 +22,9 @@ saddle_fixed_t saddle_speed_from_m_s(float value_m_s);
 
 float saddle_speed_to_m_s(saddle_fixed_t speed);
 
+/** Limited to +-4 m/s, as both must be. */
+saddle_fixed_t saddle_speed_sum(saddle_fixed_t a, saddle_fixed_t b);
+
 /** What a rate, |rate_m_s2| < 16, makes in dt_us <= 10^7, both limited to that: up to 160 m/s; exact
  *  to 2^-41 m/s and 2 parts in 10^10 of it, for a rate that is a multiple of 2^-27. */
 saddle_fixed_t saddle_speed_change(float rate_m_s2, uint32_t dt_us);

@@ -12,6 +12,7 @@
 
 /* A quarter lasts at least 36 ms, [E6] at its extremes, and a tick at most 250 ms. */
 #define VIA_POINTS_A_TICK 8
+#define STEP_MAX_M 2.0f     /* no landing is further from where it was planned */
 #define SPEED_MIN_M_S 0.01f /* slower transitions are shaped as if this fast */
 
 /* A landing is taken over in the first half of the quarter after it and the first quarter of the
@@ -355,7 +356,7 @@ static bool comes_to_rest(const saddle_cycle_t *cycle, uint32_t dt_us, uint32_t 
     const float speed_m_s = cycle->profile.speed_m_s;
     const float distance_m = saddle_cycle_distance_to_via_point_m(cycle);
     const float time_us = speed_m_s > 0.0f ? 2.0e6f * distance_m / speed_m_s : 0.0f;
-    if (time_us > (float)dt_us) {
+    if (time_us < 0.0f || time_us > (float)dt_us) {
         return false;
     }
     *rest_us = dt_us - (uint32_t)time_us;
@@ -544,7 +545,7 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
     const saddle_vec2_t swing_m = {foot.position_m.x - dx_m, foot.position_m.y - dy_m};
     move_to(cycle, saddle_position_from_m(x_m));
     cycle->quarter_length = saddle_position_from_m(length_m);
-    cycle->origin_x_nm += (int64_t)(int32_t)(1.0e9f * dx_m);
+    cycle->origin_x_nm += (int64_t)(int32_t)(1.0e9f * saddle_clamp(dx_m, -STEP_MAX_M, STEP_MAX_M));
     cycle->stance_y_m += dy_m;
     cycle->last_step_m = step_m;
     const float speed_m_s = cycle->profile.speed_m_s;

@@ -199,6 +199,7 @@ void saddle_planner_advance(saddle_planner_t *planner, const saddle_model_t *mod
         } else {
             return;
         }
+        rest_us = rest_us < dt_us ? rest_us : dt_us;
     }
 }
 

@@ -44,7 +44,7 @@ saddle_fixed_t saddle_profile_advance(saddle_speed_profile_t *profile, uint32_t 
         const saddle_fixed_t rise = saddle_speed_change(rate_m_s2, dt_us);
         const saddle_fixed_t change = wanted_m_s < 0.0f ? -rise : rise;
         change_m_s = saddle_speed_to_m_s(change);
-        saddle_profile_set_speed(profile, profile->speed + change);
+        saddle_profile_set_speed(profile, saddle_speed_sum(profile->speed, change));
     }
     return profile->speed * (int64_t)dt_us -
            saddle_position_from_m(0.5f * change_m_s * change_time_s);
@@ -119,7 +119,7 @@ saddle_fixed_t saddle_profile_speed_after(const saddle_speed_profile_t *profile,
     }
     /* The change alone is rounded: the steps' lengths follow from this speed and add up. */
     const float change_m_s = 2.0f * pace.acceleration_m_s2 * distance_m / sum_m_s;
-    return profile->speed + saddle_speed_from_m_s(change_m_s);
+    return saddle_speed_sum(profile->speed, saddle_speed_from_m_s(change_m_s));
 }
 
 float saddle_pace_time_s(const saddle_pace_t *pace, float distance_m)

@@ -1,0 +1,132 @@
+/** What every port shares and the loop of a controller, on a board that does anything: any frames,
+ *  lost or sent or not, any clock. The core is not run here (core.c does that): its calls give any
+ *  result. Read by Eva (`make prove`). */
+#include "any.h"
+
+#include <board.h>
+#include <controller.h>
+#include <settings.h>
+#include <slcan.h>
+
+static volatile saddle_can_frame_t any_frame;
+static volatile saddle_config_t any_config;
+static volatile saddle_command_t any_command;
+static volatile saddle_output_t any_output;
+static volatile uint32_t any_page[128];
+
+bool saddle_can_receive(saddle_can_frame_t *frame)
+{
+    *frame = any_frame;
+    frame->length = any_uint8 % (SADDLE_WIRE_LENGTH + 1u);
+    return any_bool();
+}
+
+uint32_t saddle_can_lost(void)
+{
+    return any_uint32;
+}
+
+bool saddle_can_send(const saddle_can_frame_t *frame)
+{
+    char line[SADDLE_SLCAN_LINE];
+    (void)saddle_slcan_write(frame, line);
+    return any_bool();
+}
+
+uint64_t saddle_clock_now_us(void)
+{
+    return any_uint64;
+}
+
+uint32_t saddle_clock_ticks_due(void)
+{
+    return any_uint32;
+}
+
+void saddle_watchdog_feed(void) {}
+
+saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *config)
+{
+    (void)context;
+    (void)config;
+    return any_bool() ? SADDLE_OK : SADDLE_ERROR_CONFIG;
+}
+
+bool saddle_command_usable(const saddle_command_t *command)
+{
+    (void)command;
+    return any_bool();
+}
+
+saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
+                            saddle_output_t *output)
+{
+    (void)context;
+    (void)input;
+    *output = any_output;
+    output->plan.valid = any_bool();
+    output->scores.can_stop = any_bool();
+    output->scores.paper_stable = any_bool();
+    output->scores.bos.defined = any_bool();
+    output->verdict.margin_known = any_bool();
+    output->verdict.compared = any_bool();
+    output->verdict.on_track = any_bool();
+    output->verdict.recovery.found = any_bool();
+    output->verdict.recovery.stops = any_bool();
+    return any_bool() ? SADDLE_OK : SADDLE_ERROR_TIME;
+}
+
+/** A page of flash with anything in it, and a CRC that fits by chance. */
+static void read_settings(saddle_config_t *config)
+{
+    uint32_t page[128];
+    bool lockstep = false;
+    for (size_t i = 0; i < 128u; ++i) {
+        page[i] = any_uint32;
+    }
+    (void)saddle_settings_read(page, config, &lockstep);
+}
+
+static void read_serial_line(void)
+{
+    static saddle_slcan_reader_t reader;
+    saddle_can_frame_t frame = any_frame;
+    (void)saddle_slcan_read(&reader, (char)any_uint8, &frame);
+}
+
+static void queue(void)
+{
+    static saddle_can_queue_t queue;
+    saddle_can_frame_t frame = any_frame;
+    (void)saddle_can_queue_put(&queue, &frame);
+    (void)saddle_can_queue_take(&queue, &frame);
+}
+
+/** What the host process does to its inbox and a controller does not. */
+static void host(void)
+{
+    static saddle_inbox_t inbox;
+    saddle_inbox_init(&inbox, any_bool() ? SADDLE_SOURCE_NONE : SADDLE_SOURCE_LCM);
+    while (any_bool()) {
+        const saddle_command_t command = any_command;
+        saddle_inbox_take_command(&inbox, SADDLE_SOURCE_LCM, any_bool() ? &command : NULL,
+                                  any_uint64);
+        (void)saddle_inbox_read(&inbox, any_uint64);
+        saddle_inbox_release(&inbox);
+    }
+}
+
+int main(void)
+{
+    static saddle_controller_t controller;
+    saddle_config_t config = any_config;
+    read_settings(&config);
+    (void)saddle_controller_init(&controller, &config, any_bool());
+    while (any_bool()) {
+        read_serial_line();
+        queue();
+        saddle_controller_step(&controller);
+    }
+    host();
+    return 0;
+}
