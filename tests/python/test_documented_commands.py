@@ -98,6 +98,9 @@ def checkout(tmp_path_factory) -> Path:
     for name, speed_m_s in (("slow", 0.8), ("normal", 1.0), ("fast", 1.2)):
         markers = laboratory(walk_of(PERSON, speed_m_s), LABORATORIES["z up, walking along -y"])
         c3d_file(folder / f"{name}.c3d", markers)
+    (folder / "JANE").mkdir()
+    for name in ("slow", "fast"):
+        (folder / f"JANE/{name}.c3d").symlink_to(folder / f"{name}.c3d")
     (folder / "FOLDER").mkdir()
     (folder / "FOLDER/a__walk.csv").write_text(csv_text(walk_of(PERSON, 1.0)))
     return folder

@@ -20,7 +20,7 @@ from saddlewalk.transport.lcm_log import LcmLog
 
 TICKS = 163  # of 13 s
 OUTPUTS = TICKS * 6
-FRAMES = TICKS * 22
+FRAMES = TICKS * 26
 
 
 def rerun(log: Path, capsys, *options: str) -> tuple[int, str, str]:
@@ -71,7 +71,7 @@ def test_a_run_in_real_time_is_recomputed_bit_for_bit(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("channel", "byte", "named"),
     [
-        ("PLAN", -1, "SADDLEWALK_PLAN landing_m[1]: recorded"),
+        ("PLAN", -1, "SADDLEWALK_PLAN load[1]: recorded"),
         ("PLAN", 17, "SADDLEWALK_PLAN mode: recorded 0, recomputed 1"),
         ("SCORES", -1, "SADDLEWALK_SCORES xcom_m[1]: recorded"),
         ("VERDICT", 16, "SADDLEWALK_VERDICT level: recorded"),
@@ -79,7 +79,7 @@ def test_a_run_in_real_time_is_recomputed_bit_for_bit(tmp_path, capsys):
         ("BALANCE", -1, "SADDLEWALK_BALANCE walk_step_margin: recorded"),
         ("BOS", -1, "SADDLEWALK_BOS y_m[15]: recorded"),
         ("HEALTH", 20, "SADDLEWALK_HEALTH status: recorded 1, recomputed 0"),
-        ("PLAN", 0, "SADDLEWALK_PLAN: recorded 156 bytes of no such type"),
+        ("PLAN", 0, "SADDLEWALK_PLAN: recorded 200 bytes of no such type"),
     ],
 )
 def test_one_flipped_bit_of_an_output_is_named(walk, tmp_path, capsys, channel, byte, named):
@@ -301,12 +301,12 @@ def test_a_can_log_with_another_body_differs(walk, capsys):
 
 def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
     frames = frames_of(walk)
-    log = can_log(tmp_path / "mid.log", frames[29 * 5 :])
+    log = can_log(tmp_path / "mid.log", frames[33 * 5 :])
     status, _, shown = rerun(log, capsys)
     assert (status, shown.count("\n")) == (2, 1) and "the log begins in mid-run" in shown
     answered = [i for i, frame in enumerate(frames) if frame.arbitration_id == 0x140]
     status, shown, _ = rerun(
-        can_log(tmp_path / "lost.log", frames[: answered[9] - 24] + frames[answered[9] + 1 :]),
+        can_log(tmp_path / "lost.log", frames[: answered[9] - 28] + frames[answered[9] + 1 :]),
         capsys,
     )
     assert status == 1 and "9 ticks recomputed" in shown and "2 sets of measurements came" in shown

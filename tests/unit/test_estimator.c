@@ -36,7 +36,11 @@ static float normal(float deviation)
 
 static saddle_vec3_t normal_vec3(float deviation)
 {
-    return (saddle_vec3_t){normal(deviation), normal(deviation), normal(deviation)};
+    saddle_vec3_t vector;
+    vector.x = normal(deviation);
+    vector.y = normal(deviation);
+    vector.z = normal(deviation);
+    return vector;
 }
 
 void setUp(void)

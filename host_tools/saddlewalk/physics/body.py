@@ -9,9 +9,8 @@ import mujoco
 import numpy as np
 
 from saddlewalk.config import ANKLES
-from saddlewalk.contract import GRAVITY_M_S2
+from saddlewalk.contract import GRAVITY_M_S2, SIDES
 
-SIDES = ("left", "right")
 TIMESTEP_S = 1e-3
 # Contacts: as stiff as a step of 1 ms bears, November 2026; friction of a shoe on a dry floor.
 SOLREF, SOLIMP = (0.008, 1.0), (0.9, 0.99, 0.002, 0.5, 2.0)

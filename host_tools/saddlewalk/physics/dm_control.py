@@ -18,9 +18,10 @@ import mujoco
 import numpy as np
 
 from saddlewalk.config import ANKLES
+from saddlewalk.contract import SIDES
 from saddlewalk.errors import UserError
 from saddlewalk.paths import build_dir
-from saddlewalk.physics.body import SIDES, Body, Leg, compiled, contact
+from saddlewalk.physics.body import Body, Leg, compiled, contact
 
 PACKAGE = "playground==0.2.0"
 XML = "mujoco_playground/_src/dm_control_suite/xmls/humanoid.xml"

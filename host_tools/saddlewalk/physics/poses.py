@@ -8,7 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from saddlewalk.physics.body import SIDES
+from saddlewalk.contract import SIDES
 
 ROUND = [math.pi * k / 12 for k in range(13)]  # of a cap or, twice, of a sphere
 

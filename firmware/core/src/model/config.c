@@ -136,7 +136,7 @@ saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg)
         .double_support_share = 0.16f,
         .cop_enter = -0.2f,
         .cop_leave = 0.8f,
-        .landing_early_s = 0.12f,
+        .landing_early_s = 0.0f,
         .landing_late_s = 0.12f,
         .tick_max_s = 0.2f,
         .command_max_age_s = 0.24f,
