@@ -16,7 +16,8 @@ class Walk:
     """A wearer exactly on the plan, but for the contacts that a test gives its swing foot."""
 
     def __init__(self, **fields: float) -> None:
-        self.firmware = Core(configuration({"lost_inputs_stop": 0, "landing_early_s": 0.12} | fields))
+        defaults = {"lost_inputs_stop": 0, "landing_early_s": 0.12}
+        self.firmware = Core(configuration(defaults | fields))
         self.ticks = 0
         self.plan = None
         self.nudge_m = 0.0  # numbers that stay the same are frozen sensors

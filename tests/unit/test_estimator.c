@@ -285,7 +285,7 @@ static void walk(double *t, double until, double dt)
 static errors_t errors_of_walk(double dt)
 {
     errors_t sums = {0.0, 0.0, 0.0, 0.0, 0.0, 0};
-    for (double t = 0.0; t < STAND_S + 1.0 + MANY(20.0); t += dt) {
+    for (double t = 0.0; t < STAND_S + 5.0 + MANY(16.0); t += dt) {
         const saddle_sensors_t sensors = sensors_at(t, 0.0);
         saddle_estimator_update(&estimator, &sensors, &estimate);
         if (t > STAND_S + 0.2) {

@@ -81,9 +81,9 @@ typedef struct {
     float double_support_share; /**< of a step, after its landing: both feet carry, [E39] */
     float cop_enter;            /**< where the CoP enters a foot, of cop_range_m, */
     float cop_leave;            /**< and where it leaves it, [E39] */
-    float landing_early_s;      /**< a foot that lands sooner by no more carries then; 0: none, [E43] */
-    float landing_late_s;       /**< and one that is late is waited for so long */
-    float tick_max_s;           /**< the plan advances by no more than this in one tick */
+    float landing_early_s; /**< a foot that lands sooner by no more carries then; 0: none, [E43] */
+    float landing_late_s;  /**< and one that is late is waited for so long */
+    float tick_max_s;      /**< the plan advances by no more than this in one tick */
     float command_max_age_s;    /**< an older command times out: the walk stops */
     float lost_inputs_stop;     /**< 1: lost inputs stop the walk; 0: for recordings, or a
                                      device with a safe state of its own */
