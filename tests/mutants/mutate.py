@@ -5,9 +5,10 @@ usage: mutate.py PART SAMPLE SEED LEAST
 PART is core or wire. SAMPLE mutants, drawn with SEED (0: all there are), are compiled one by one,
 and the unit tests run until one fails. A mutant with the original's object code is none. Survivors
 are listed, but for those of equivalent.toml, which says why no test can tell them. Exit status 1
-if less than LEAST percent of the others are killed.
+if less than LEAST percent of the others are killed, by more than two standard errors of a sample.
 """
 
+import math
 import random
 import re
 import shutil
@@ -264,7 +265,9 @@ def main() -> None:
         f"{len(every)} there are (seed {seed}; {outcomes.count('same')} with the same code, "
         f"{outcomes.count('invalid')} do not compile)"
     )
-    sys.exit(100 * share < least)
+    wanted = least / 100
+    error = math.sqrt(wanted * (1 - wanted) / max(1, killed + survived)) if sample else 0.0
+    sys.exit(share < wanted - 2 * error)
 
 
 if __name__ == "__main__":
