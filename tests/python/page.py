@@ -21,13 +21,16 @@ QUIET = ["--no-sandbox", "--disable-background-networking", "--no-first-run"]
 
 @contextlib.contextmanager
 def chromium() -> Iterator[Browser]:
-    """Skips the test where there is none."""
+    """Skips the test where there is none. It runs without the sanitizers of the tests."""
     program = shutil.which("chromium") or shutil.which("chromium-browser")
     if program is None:
         pytest.skip("a browser: apt install chromium")
-    with sync_playwright() as playwright:
-        args = [*QUIET, "--enable-precise-memory-info", "--js-flags=--expose-gc"]
-        browser = playwright.chromium.launch(executable_path=program, args=args)
+    args = [*QUIET, "--enable-precise-memory-info", "--js-flags=--expose-gc"]
+    with contextlib.ExitStack() as stack:
+        with pytest.MonkeyPatch.context() as environment:
+            environment.delenv("LD_PRELOAD", raising=False)
+            playwright = stack.enter_context(sync_playwright())
+            browser = playwright.chromium.launch(executable_path=program, args=args)
         yield browser
         browser.close()
 

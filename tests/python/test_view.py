@@ -4,6 +4,7 @@ import csv
 import http.client
 import itertools
 import math
+import os
 import time
 from array import array
 from pathlib import Path
@@ -327,6 +328,9 @@ def heap_bytes(page) -> int:
     return page.evaluate("performance.memory.usedJSHeapSize")
 
 
+@pytest.mark.skipif(
+    "libasan" in os.environ.get("LD_PRELOAD", ""), reason="the sanitizer keeps what is freed"
+)
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize(
     ("warm_s", "for_s"),
