@@ -253,6 +253,11 @@ class Wearer:
         self._cosh, self._sinh = math.cosh(wt), math.sinh(wt)
 
     @property
+    def unsolved_share(self) -> float:
+        """Of the controller's programmes, without an optimum: a pendulum needs none."""
+        return 0.0
+
+    @property
     def xcom_m(self) -> complex:
         return self.com_m + self.velocity_m_s / self.body.natural_frequency_rad_s
 

@@ -14,7 +14,6 @@ import numpy as np
 from saddlewalk.contract import LEVELS, STANDING, TICK_S
 from saddlewalk.core import ffi
 from saddlewalk.emulation import closed_loop
-from saddlewalk.emulation.wearer import STEP_S, Wearer
 from saddlewalk.physics.plants import PlantChoice
 from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.table import Cell
@@ -146,16 +145,8 @@ def walked(course: Course, plant: PlantChoice, config: Any) -> Outcome:
         xcom_sd_x_m=float(deviation[0]),
         xcom_sd_y_m=float(deviation[1]),
         ticks={level: levels[level] for level in LEVELS},
-        unsolved_share=_unsolved_share(wearer),
+        unsolved_share=wearer.unsolved_share,
     )
-
-
-def _unsolved_share(wearer: Wearer) -> float:
-    from saddlewalk.physics.wearer import CONTROL_STEPS, PhysicalWearer
-
-    if not isinstance(wearer, PhysicalWearer):
-        return 0.0
-    return wearer.unsolved / max(wearer.time_s / (STEP_S * CONTROL_STEPS), 1)
 
 
 def grouped(outcomes: Sequence[Outcome]) -> Iterator[dict[str, float]]:

@@ -64,9 +64,9 @@ class PhysicalWearer(emulation.Wearer):
         self._seen = deque([self._exact_now()], maxlen=1 + round(sensor_delay_s / STEP_S))
 
     @property
-    def unsolved(self) -> int:
-        """Quadratic programmes without an optimum so far."""
-        return self._dynamics.unsolved
+    def unsolved_share(self) -> float:
+        """Of the quadratic programmes so far, without an optimum."""
+        return self._dynamics.unsolved / max(self._steps / CONTROL_STEPS, 1)
 
     def exact(self) -> Measurement:
         """What sensors without noise give, with their delay."""
