@@ -34,18 +34,18 @@ cross-compiler:
 			"apt-get install -y gcc-arm-none-eabi picolibc-arm-none-eabi" >&2; exit 1; }
 
 test: build/build.ninja .venv/installed-test ## every test that this machine can run in minutes
-	$(call run_tests,build,release)
+	$(call run_tests,build,release,,$(MINUTES))
 	@echo "Left out, with targets of their own: test-exhaustive test-flood test-memory test-socketcan test-targets"
 
 test-exhaustive: build/build.ninja .venv/installed-test ## the core's functions over every float
 	@$(BIN)/ninja -C build --quiet tests
 	@$(BIN)/ctest --preset exhaustive --output-junit reports/exhaustive.xml
 
-test-clang: build-clang/build.ninja .venv/installed-test ## the same built by clang
-	$(call run_tests,build-clang,clang)
+test-clang: build-clang/build.ninja .venv/installed-test ## the tests of the C code, built by clang
+	$(call run_tests,build-clang,clang,,$(MINUTES) and firmware)
 
 test-sanitize: build-sanitize/build.ninja .venv/installed-test ## the same with the address and undefined sanitizers
-	$(call run_tests,build-sanitize,sanitize,$(SANITIZED))
+	$(call run_tests,build-sanitize,sanitize,$(SANITIZED),$(MINUTES) and firmware)
 
 coverage: build-coverage/build.ninja .venv/installed-test ## every branch and condition of the firmware, by the C tests
 	@rm -rf build-coverage/profiles build-coverage/reports
@@ -85,12 +85,16 @@ test-targets: build .venv/installed-test ## the core, the wire and their tests o
 
 TARGETS := cortex-m4f cortex-m7 cortex-m33 cortex-m3 rv32imafc i686 powerpc wasm32
 
-# $(call run_tests,BUILD_DIR,CTEST_PRESET,ENVIRONMENT_OF_PYTEST)
+# The Python tests, a file to each processor; those without targets of their own.
+PARALLEL := --numprocesses auto --dist loadfile
+MINUTES := not socketcan and not flood and not memory and not targets
+
+# $(call run_tests,BUILD_DIR,CTEST_PRESET,ENVIRONMENT_OF_PYTEST,MARKED)
 define run_tests
 	@rm -rf $(1)/reports
 	@$(BIN)/ninja -C $(1) --quiet all tests
 	-@$(BIN)/ctest --preset $(2) --output-junit reports/ctest.xml
-	-@SADDLEWALK_BUILD=$(1) $(3) $(BIN)/pytest --junit-xml $(1)/reports/pytest.xml
+	-@SADDLEWALK_BUILD=$(1) $(3) $(BIN)/pytest $(PARALLEL) -m "$(4)" --junit-xml $(1)/reports/pytest.xml
 	@$(BIN)/python tests/summary.py $(1)/reports/ctest.xml $(1)/reports/pytest.xml
 endef
 

@@ -162,7 +162,7 @@ uint32_t playground_plan(uint32_t count, uint32_t period_us)
         saddle_scores_t scores;
         (void)saddle_tick(&context, &input, &output);
         (void)saddle_score_plan(&context, &output.plan, &scores);
-        write_row(rows + i * ROW_LENGTH, &output.plan, &scores);
+        write_row(rows + (size_t)i * ROW_LENGTH, &output.plan, &scores);
     }
     return count;
 }
@@ -215,7 +215,7 @@ static float *put_polygon(float *place, const saddle_bos_t *bos, saddle_vec2_t o
         place[i] = origin_m.x + vertices[i].x;
         place[SADDLE_BOS_VERTICES + i] = origin_m.y + vertices[i].y;
     }
-    return place + 2 * SADDLE_BOS_VERTICES;
+    return place + (size_t)2 * SADDLE_BOS_VERTICES;
 }
 
 static float *put_verdict(float *place)

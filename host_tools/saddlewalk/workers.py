@@ -7,6 +7,7 @@ worker is lost is run again on another.
 import contextlib
 import functools
 import hashlib
+import multiprocessing
 import pickle
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import CancelledError, ProcessPoolExecutor, as_completed
@@ -60,7 +61,9 @@ def run_tasks(
 def _in_processes(
     work: Callable[..., list[Result]], tasks: Sequence[tuple[Any, ...]], workers: Workers
 ) -> Completed[Result]:
-    with ProcessPoolExecutor(workers.jobs) as pool:
+    # Not forked: a fork of a process with threads may inherit a lock that nobody releases.
+    spawn = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers.jobs, mp_context=spawn) as pool:
         futures = {pool.submit(work, *task): index for index, task in enumerate(tasks)}
         try:
             for future in as_completed(futures):

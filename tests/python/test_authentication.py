@@ -18,6 +18,8 @@ from saddlewalk.transport.authentication import (
     write_new_key,
 )
 
+pytestmark = pytest.mark.firmware
+
 SEED = 20261122
 KEY = bytes.fromhex("2b7e151628aed2a6abf7158809cf4f3c")
 WALK = {"MODE": 1, "SPEED": 1.2, "HEEL_STRIKE": 0.1745}

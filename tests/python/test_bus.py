@@ -17,6 +17,8 @@ from saddlewalk.transport.bus import DEFAULT_GROUP, LoopbackUdpBus, describe, op
 from saddlewalk.transport.lcmbus import open_lcm
 from saddlewalk.transport.wire import Receiver, Sender
 
+pytestmark = pytest.mark.firmware
+
 WAIT_S = 5.0  # for what must come
 SILENCE_S = 0.05  # for what must not
 

@@ -24,6 +24,8 @@ from saddlewalk.transport.bus import private_udp
 from saddlewalk.transport.slcan import SlcanBus, frame_of, text_of
 from saddlewalk.transport.wire import FRAME_LENGTH, Sender, message_name
 
+pytestmark = pytest.mark.firmware
+
 on_controller = pytest.mark.targets
 START_S = 10.0  # timeout for a starting emulator
 WAIT_S = 2.0

@@ -8,6 +8,8 @@ import pytest
 from saddlewalk.evaluation.cross_validation import leave_one_out
 from saddlewalk.evaluation.scoring import Score
 
+pytestmark = pytest.mark.firmware
+
 TICK_S = 0.08
 PUSH_S = 10.0
 

@@ -25,6 +25,8 @@ from saddlewalk.emulation.wearer import (
 )
 from saddlewalk.planning.schedule import schedule_of
 
+pytestmark = pytest.mark.firmware
+
 STEADY = Noise(0.0, 0.0, 0.0)
 
 

@@ -27,6 +27,8 @@ from saddlewalk.faults.scenario import (
 from saddlewalk.transport import wire
 from saddlewalk.workers import Workers
 
+pytestmark = pytest.mark.firmware
+
 EXAMPLE = Path(__file__).parents[2] / "examples/faults.toml"
 CONFIG = configuration({})
 BODY = core.body_of(CONFIG)

@@ -17,6 +17,8 @@ from saddlewalk.contract import OUTPUT_FRAMES
 from saddlewalk.firmware import ffi, library
 from saddlewalk.transport import lcm_types, wire
 
+pytestmark = pytest.mark.firmware
+
 # Field of saddle_output_t, signal on CAN, members on LCM; -: not on that bus. What is added to a
 # struct fails here until it has a line.
 FIELDS = """

@@ -29,6 +29,8 @@ from saddlewalk.transport.bus import open_bus
 from saddlewalk.transport.lcmbus import open_lcm
 from saddlewalk.transport.wire import frame_crc
 
+pytestmark = pytest.mark.firmware
+
 STANDING_MODE, STARTING, WALKING = 0, 1, 2
 
 

@@ -41,6 +41,8 @@ from saddlewalk.transport.lcm_types import plan_t, status_t
 from saddlewalk.transport.wire import WIRE_VERSION, Receiver, frame_crc
 from sanitizer import SANITIZED
 
+pytestmark = pytest.mark.firmware
+
 FAULT_COMMAND_STALE, LIMIT_SAFE_STOP = 1 << 14, 1 << 5
 STAND = {"MODE": 0, "SPEED": 0.0, "HEEL_STRIKE": 0.0}
 STANDING_MODE, STOPPING = 0, 3

@@ -8,6 +8,8 @@ from saddlewalk import core, joints
 from saddlewalk.core import ffi
 from saddlewalk.errors import UserError
 
+pytestmark = pytest.mark.firmware
+
 UPRIGHT = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
 
 

@@ -18,6 +18,8 @@ from saddlewalk.errors import UserError
 from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.lcmbus import open_lcm
 
+pytestmark = pytest.mark.firmware
+
 
 class Ticking:
     """A bus on which a tick comes every 80 ms, of which some are lost; a frame is its number.

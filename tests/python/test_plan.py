@@ -13,6 +13,8 @@ from saddlewalk.cli import main
 from saddlewalk.config import load_config
 from twin import Twin
 
+pytestmark = pytest.mark.firmware
+
 GOLDEN = Path(__file__).parents[1] / "golden"
 SPEEDS = (0.7, 1.0, 1.2, 1.6)
 ANGLES_DEG = (5, 10, 15)

@@ -10,6 +10,8 @@ from saddlewalk.config import configuration
 from saddlewalk.contract import LEFT, RIGHT, STANDING, STARTING, TICK_S
 from saddlewalk.core import Command, Core, Measurement, ffi, library
 
+pytestmark = pytest.mark.firmware
+
 STEP_S = 1e-3
 STEPS_A_TICK = round(TICK_S / STEP_S)
 CONFIG = configuration({})

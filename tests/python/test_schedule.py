@@ -11,6 +11,8 @@ import pytest
 
 from saddlewalk.cli import main
 
+pytestmark = pytest.mark.firmware
+
 EXAMPLE = Path(__file__).parents[2] / "examples/schedule.csv"
 START_CHANGE_STOP = "0,0\n0.5,0.6\n5,1.2\n9,0\n"
 # 80 ms ticks are exact; what is off is float positions of some metres.

@@ -14,6 +14,8 @@ from saddlewalk.gait.motion_capture import load_walk
 from saddlewalk.recorded_states import STATE_COLUMNS
 from synthetic_walk import Walk, csv_text
 
+pytestmark = pytest.mark.firmware
+
 NUMBERS = "v_comp_m_s s_sw mos_com_m mos_xcom_m ebos_com_m ebos_xcom_m excess_stop_j".split()
 
 

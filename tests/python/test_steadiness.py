@@ -15,6 +15,8 @@ from saddlewalk.gait.motion_capture import load_walk
 from saddlewalk.gait.recording import Recording, load_recording
 from synthetic_walk import Walk, csv_text
 
+pytestmark = pytest.mark.firmware
+
 TRIALS = paths.CHECKOUT.parent / "shared/data/gait"
 
 

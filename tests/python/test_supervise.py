@@ -13,6 +13,8 @@ from saddlewalk.cli import main
 from saddlewalk.recorded_states import SCORE_COLUMNS, STATE_COLUMNS
 from twin import GRAVITY, Twin, bos_margin
 
+pytestmark = pytest.mark.firmware
+
 TOLERANCE = 2e-5
 FAULTS_AND_LIMITS = 0xFFFFFF  # of the flags; above is the reason
 INPUT, NO_STEP = 1, 3

@@ -12,6 +12,8 @@ from saddlewalk.emulation.exoskeleton import plan_of
 from saddlewalk.ticks import MESSAGES, TickReader, next_tick
 from saddlewalk.transport.wire import Sender
 
+pytestmark = pytest.mark.firmware
+
 FIRMWARE = Core(configuration({}))
 
 

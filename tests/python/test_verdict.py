@@ -12,6 +12,8 @@ from saddlewalk.cli import main
 from saddlewalk.recorded_states import STATE_COLUMNS
 from twin import GRAVITY, Twin, bos_margin, to_saddle
 
+pytestmark = pytest.mark.firmware
+
 SPEEDS = [0.5, 0.7, 1.0, 1.2, 1.6]
 DT_S = 0.08
 D_H_M = 0.10

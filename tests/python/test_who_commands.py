@@ -10,6 +10,8 @@ import pytest
 from host_node import COMMAND_HOLDS, SILENCE_S, Host, LcmNode
 from private_test_network import HERE, THERE, in_private_network, neighbour
 
+pytestmark = pytest.mark.firmware
+
 COMMANDS = 20
 URL = "udpm://239.255.76.67:7667?ttl=0"
 FOREIGN_URL = "udpm://239.255.76.67:7667?ttl=1"

@@ -13,6 +13,8 @@ from cffi import FFI
 from saddlewalk import paths, ticks
 from saddlewalk.transport import wire
 
+pytestmark = pytest.mark.firmware
+
 SEED = 20261122
 OUTPUTS = 1000  # of 29 frames
 INPUTS = 3000  # of 4 frames
