@@ -20,11 +20,15 @@ LAYER = re.compile(r"^saddle_layer\(([\w/]+)([^)]*)\)", re.MULTILINE)
 INCLUDE = re.compile(r"^#include ([<\"])(.+)[>\"]\n", re.MULTILINE)
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 FUNCTION = re.compile(
-    r"^(?!static |typedef |return |else )(?=[a-z])(?:const )?[\w ]+[ *](saddle_\w+)\(",
+    r"^(?!static |typedef |return |else )(?=[a-z]|SADDLE_NOINLINE )(?:const )?"
+    r"[\w ]+[ *](saddle_\w+)\(",
     re.MULTILINE,
 )
 STATIC = re.compile(
     r"^static (?:inline |const |SADDLE_NOINLINE )*\w+[ *]+(\w+)[(\[ =]", re.MULTILINE
+)
+DEFINED = re.compile(
+    r"^static (?!inline |SADDLE_NOINLINE )(?=[\w ]+[ *]\w+\([^;{]*\)\n\{)", re.MULTILINE
 )
 MACRO = re.compile(r"^#define (\w+)", re.MULTILINE)
 
@@ -66,6 +70,12 @@ def static(text: str, public: set[str]) -> str:
     return FUNCTION.sub(mark, text)
 
 
+def inline(text: str, folder: str) -> str:
+    """The text with its static functions inline: at -O2 a compiler then inlines as much as at -O3,
+    at -Os no more than before. Mathematics stays calls, which are shorter than a polynomial."""
+    return text if folder == "math" else DEFINED.sub("static inline ", text)
+
+
 def part(path: Path, public: set[str]) -> str:
     """One header or source, without its includes; its macros end with it."""
     text = INCLUDE.sub("", path.read_text())
@@ -76,7 +86,7 @@ def part(path: Path, public: set[str]) -> str:
     macros = MACRO.findall(text) if path.suffix == ".c" else []
     ends = "".join(f"#undef {macro}\n" for macro in macros)
     name = "/".join(path.parts[-2:] if path.parent.name != "src" else path.parts[-1:])
-    body = re.sub(r"\n{3,}", "\n\n", static(text, public)).strip()
+    body = re.sub(r"\n{3,}", "\n\n", inline(static(text, public), path.parent.name)).strip()
     return f"/* ---- {name} */\n\n{body}\n{ends and chr(10) + ends}"
 
 

@@ -99,6 +99,13 @@ def test_two_modules_with_one_name_are_rejected_in_one_file(tmp_path):
     assert amalgamate["same_names"](paths) == ["sum is in a.c and in b.c"]
 
 
+def test_the_one_file_core_marks_what_a_compiler_may_inline():
+    text = runpy.run_path(str(CHECKOUT / "tools/amalgamate.py"))["amalgamation"]()
+    assert "\nstatic inline void saddle_cycle_pose(" in text
+    assert "\nstatic float saddle_exp(" in text
+    assert "\nstatic SADDLE_NOINLINE uint32_t saddle_cycle_advance(" in text
+
+
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory) -> Path:
     prefix = tmp_path_factory.mktemp("installed")

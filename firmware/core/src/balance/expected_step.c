@@ -37,8 +37,8 @@ saddle_step_place_t saddle_step_place(const saddle_step_t *step, float x_m)
 }
 
 /* [E28] */
-void saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
-                   const saddle_step_place_t *place, saddle_expectation_t *expected)
+SADDLE_NOINLINE void saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
+                                   const saddle_step_place_t *place, saddle_expectation_t *expected)
 {
     const float half_ahead_m = 0.5f * step->landing_m.x;
     const saddle_quarter_t ahead =

@@ -37,8 +37,7 @@ saddle_step_place_t saddle_step_place(const saddle_step_t *step, float x_m);
 
 /** [E28] The step at the phase of a CoM. */
 void saddle_expect(const saddle_model_t *model, const saddle_step_t *step,
-                   const saddle_step_place_t *place,
-                   saddle_expectation_t *expected) SADDLE_NOINLINE;
+                   const saddle_step_place_t *place, saddle_expectation_t *expected);
 
 /** How a deviation of the XCoM grows in a time, [E29] [E30]. */
 typedef struct {

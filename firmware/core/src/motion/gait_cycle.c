@@ -151,7 +151,8 @@ static saddle_sample_t swing_way(const saddle_cycle_t *cycle, const saddle_model
 }
 
 /* The foot via point: the next step's length follows from the speed now. Every mismatch has gone. */
-static void pass_foot(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_fixed_t speed)
+static SADDLE_NOINLINE void pass_foot(saddle_cycle_t *cycle, const saddle_model_t *model,
+                                      saddle_fixed_t speed)
 {
     const saddle_side_t stance = cycle->quarter.stance;
     const float speed_m_s = saddle_speed_to_m_s(speed);
@@ -273,7 +274,8 @@ static void begin_step(saddle_cycle_t *cycle, const saddle_model_t *model, const
 }
 
 /* The saddle via point: the swing foot lands as planned. */
-static void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_fixed_t speed)
+static SADDLE_NOINLINE void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model,
+                                        saddle_fixed_t speed)
 {
     const place_t place =
         reference_at(cycle, model, SADDLE_PHASE_LANDING); /* no mismatch is left */
@@ -393,8 +395,8 @@ static void swing_foot(const saddle_cycle_t *cycle, const saddle_model_t *model,
 }
 
 /* The step that the swing foot makes if it lands where it is, and the CoM there. */
-static saddle_vec2_t step_here(const saddle_cycle_t *cycle, const saddle_model_t *model,
-                               place_t *place)
+static SADDLE_NOINLINE saddle_vec2_t step_here(const saddle_cycle_t *cycle,
+                                               const saddle_model_t *model, place_t *place)
 {
     const float x_m = cycle->x_m;
     const saddle_sin_cos_t phase = saddle_quarter_phase(cycle->quarter.length_m, x_m);
@@ -406,7 +408,8 @@ static saddle_vec2_t step_here(const saddle_cycle_t *cycle, const saddle_model_t
 }
 
 /* Before or after the saddle via point. */
-static void land_here(saddle_cycle_t *cycle, const saddle_model_t *model, float heel_strike_rad)
+static SADDLE_NOINLINE void land_here(saddle_cycle_t *cycle, const saddle_model_t *model,
+                                      float heel_strike_rad)
 {
     place_t place;
     const saddle_vec2_t step_m = step_here(cycle, model, &place);
@@ -437,8 +440,8 @@ static bool waits_for_foot(const saddle_cycle_t *cycle, const saddle_model_t *mo
            saddle_position_to_m(beyond) <= late_max_m(cycle, model);
 }
 
-uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model,
-                              float heel_strike_rad, uint32_t dt_us, bool *arrived)
+SADDLE_NOINLINE uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model,
+                                              float heel_strike_rad, uint32_t dt_us, bool *arrived)
 {
     uint32_t rest_us = 0;
     *arrived = comes_to_rest(cycle, dt_us, &rest_us);
@@ -518,7 +521,8 @@ static bool can_end(const saddle_cycle_t *cycle, const saddle_model_t *model, fl
            saddle_can_brake(cycle->profile.speed_m_s, model->config.acceleration_m_s2, distance_m);
 }
 
-bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m)
+SADDLE_NOINLINE bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model,
+                                       saddle_vec2_t step_m)
 {
     const saddle_side_t stance = cycle->quarter.stance;
     const float dx_m = step_m.x - cycle->last_step_m.x;

@@ -45,12 +45,11 @@ void saddle_cycle_set_last_swing(saddle_cycle_t *cycle, bool last_swing);
 /** Walk on for dt_us. Returns the microseconds left when a last swing ended with zero speed beside
  *  the stance foot; 0 while it walks on. At most eight via points are passed. */
 uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model,
-                              float heel_strike_rad, uint32_t dt_us, bool *arrived) SADDLE_NOINLINE;
+                              float heel_strike_rad, uint32_t dt_us, bool *arrived);
 
 /** Take over a landing: the step that the stance foot really made. False, and nothing changes, if
  *  it is too late in the step or the foot lies where no plan can go on from. */
-bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model,
-                       saddle_vec2_t step_m) SADDLE_NOINLINE;
+bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m);
 
 /** [E43] The swing foot is on the ground: it carries from now on, where the plan has it, and the CoM goes
  *  on from where it is. Before a landing only. False, and nothing changes, if no plan can go on so. */

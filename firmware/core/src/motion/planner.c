@@ -85,7 +85,7 @@ static void walk_on(saddle_planner_t *planner, const saddle_model_t *model)
 }
 
 /* The CoM stands over the first stance leg: take the first step. */
-static void begin_steps(saddle_planner_t *planner, const saddle_model_t *model)
+static SADDLE_NOINLINE void begin_steps(saddle_planner_t *planner, const saddle_model_t *model)
 {
     saddle_cycle_start_t start;
     start.phase = planner->start_phase;
@@ -275,8 +275,9 @@ static void watch_swing(saddle_planner_t *planner, const saddle_measurement_t *m
 }
 
 /* [E43] A foot that was in the air and is on the ground, a little before its time, carries from now on. */
-static void take_early_landing(saddle_planner_t *planner, const saddle_model_t *model,
-                               const saddle_measurement_t *measured)
+static SADDLE_NOINLINE void take_early_landing(saddle_planner_t *planner,
+                                               const saddle_model_t *model,
+                                               const saddle_measurement_t *measured)
 {
     saddle_cycle_t *cycle = &planner->cycle;
     const float early_m = model->config.landing_early_s * cycle->profile.speed_m_s;

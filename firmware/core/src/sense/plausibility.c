@@ -183,9 +183,10 @@ static uint32_t check_feet(saddle_plausibility_t *plausibility, const saddle_mod
     return faults;
 }
 
-uint32_t saddle_measurement_check(saddle_plausibility_t *plausibility, const saddle_model_t *model,
-                                  const saddle_measurement_t *measurement, float planned_m_s,
-                                  float dt_s)
+SADDLE_NOINLINE uint32_t saddle_measurement_check(saddle_plausibility_t *plausibility,
+                                                  const saddle_model_t *model,
+                                                  const saddle_measurement_t *measurement,
+                                                  float planned_m_s, float dt_s)
 {
     const uint32_t feet =
         check_foot(model, measurement, SADDLE_LEFT) | check_foot(model, measurement, SADDLE_RIGHT);

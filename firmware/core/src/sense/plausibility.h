@@ -10,6 +10,6 @@
  *  CoP beyond 2.5 m along x or y. Returns saddle_fault_t bits. */
 uint32_t saddle_measurement_check(saddle_plausibility_t *plausibility, const saddle_model_t *model,
                                   const saddle_measurement_t *measurement, float planned_m_s,
-                                  float dt_s) SADDLE_NOINLINE;
+                                  float dt_s);
 
 #endif
