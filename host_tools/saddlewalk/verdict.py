@@ -47,6 +47,12 @@ def reason_words(reason: int) -> str:
     return REASON_WORDS.get(name, name)
 
 
+def level_words(signals: Mapping[str, float]) -> str:
+    """The level and what decided it, from a tick's score signals by their names on CAN."""
+    name, why = level_name(int(signals["LEVEL"])), reason_words(int(signals["REASON"]))
+    return f"{name}: {why}" if why else name
+
+
 def cells(signals: Mapping[str, float]) -> list[Cell]:
     """In the order of COLUMNS, from a tick's score signals by their names on CAN."""
     return [

@@ -83,9 +83,12 @@ class Neighbour:
         self.ip("addr", "add", f"{THERE}/24", "dev", "there")
         self.ip("link", "set", "there", "up")
         self.ip("route", "add", "default", "dev", "there")
+        while "state UP" not in self.ip("-oneline", "link", "show", "there"):
+            time.sleep(0.01)  # the kernel drops what is sent before
 
-    def ip(self, *words: str) -> None:
-        subprocess.run([*self._enter, "ip", *words], check=True)
+    def ip(self, *words: str) -> str:
+        command = [*self._enter, "ip", *words]
+        return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
 
     def python(self, script: str) -> None:
         """Run a script there, which may import these tests' modules."""

@@ -24,6 +24,7 @@ from saddlewalk.contract import REASONS, TICK_S
 from saddlewalk.emulation.wearer import Push
 from saddlewalk.logs.messages import decode
 from saddlewalk.logs.recorder import CHANNELS, COLUMNS
+from saddlewalk.paths import CHECKOUT
 from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.lcm_log import LcmLog
 from saddlewalk.verdict import REASON_WORDS
@@ -56,6 +57,7 @@ def test_demo_records_a_sound_walk_that_reads_back(tmp_path, ports, capsys):
     shown = capsys.readouterr().out
     assert "did not fall" in shown and "BAD" not in shown and "push of 8 N s to 90 degrees" in shown
     assert "stands at the end" in shown
+    assert f" view {tmp_path}/walk.lcmlog    # this walk in the browser" in shown
     assert f"{round(22 / TICK_S)} ticks recomputed from the log: the same bits\n" in shown
     assert_levels_printed(shown, [row["level"] for row in rows(tmp_path)])
     assert {path.name for path in tmp_path.iterdir()} == FILES
@@ -89,6 +91,13 @@ def test_demo_records_a_sound_walk_that_reads_back(tmp_path, ports, capsys):
     log.close()
     assert set(heard) == set(CHANNELS)
     assert heard.count("SADDLEWALK_TRUTH") == heard.count("SADDLEWALK_PLAN") == ticks
+
+
+def test_the_tutorial_runs_on_a_log_of_the_demo(walk):
+    command = [sys.executable, CHECKOUT / "examples/tutorial.py", walk / "walk.lcmlog"]
+    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    assert "0.4 m/s to the left: XCoM in base -0.025 m, can stop: True\n" in printed
+    assert f"{round(13 / TICK_S)} plans, at most 1.20 m/s\n" in printed
 
 
 def assert_levels_printed(shown: str, levels: list[str]) -> None:

@@ -188,7 +188,7 @@ def test_commands_are_written_in_one_form(page):
 
 
 def inline_commands(page: Path) -> list[str]:
-    """Commands in the text, and those of the README's table, whose head has the program."""
+    """Commands in the text, and those of the table of commands, whose head has the program."""
     text = page.read_text()
     typed = re.findall(r"`(\.venv/bin/saddlewalk [a-z][^`]*)`", text)
     rows = text.partition("| `.venv/bin/saddlewalk` |")[2].partition("\n\n")[0]
@@ -206,5 +206,5 @@ def test_commands_in_the_text_have_the_options_that_they_name():
 
 
 def test_the_table_has_every_command():
-    rows = inline_commands(CHECKOUT / "README.md")
+    rows = inline_commands(CHECKOUT / "docs/commands.md")
     assert {line.split()[1] for line in rows} == set(commands())

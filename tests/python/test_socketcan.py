@@ -92,10 +92,10 @@ def test_cansend_moves_the_firmware():
         assert tick["HEALTH"]["REJECTED_FRAMES"] == 0
 
 
-def test_the_readme_cansend_starts_a_walk():
-    readme = (paths.CHECKOUT / "README.md").read_text()
+def test_the_documented_cansend_starts_a_walk():
+    page = (paths.CHECKOUT / "docs/bus.md").read_text()
     with lockstep(spec=CLASSIC) as host:
-        run(re.search(r"^ *(cansend vcan0 \S+)", readme, re.MULTILINE)[1])
+        run(re.search(r"^ *(cansend vcan0 \S+)", page, re.MULTILINE)[1])
         host.measure()
         tick = host.tick()
         assert tick["COMMAND"]["SPEED"] == pytest.approx(1.2)

@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import math
+import shlex
 import sys
 import tempfile
 import time
@@ -23,6 +24,7 @@ from saddlewalk.config import host_arguments, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.logs.run_files import CAN_LOG, FILM, LCM_LOG, PICTURE, STRIP, TABLE, run_names
 from saddlewalk.outputs import OutputFolder, add_input, add_output
+from saddlewalk.paths import in_checkout
 from saddlewalk.printable import printable
 
 if TYPE_CHECKING:
@@ -358,7 +360,18 @@ def _finish(
     for path in (folder / name for name in (PICTURE, STRIP, FILM, TABLE, CAN_LOG, LCM_LOG)):
         if path.exists():
             print(f"  {printable(path)}  {path.stat().st_size / 1024:.0f} KiB")
+    print(_what_next(folder))
     return 0 if all(good for good, _ in checks) else 1
+
+
+def _what_next(folder: Path) -> str:
+    log = shlex.quote(printable(folder / LCM_LOG))
+    own = "saddlewalk" if not in_checkout() else ".venv/bin/saddlewalk"
+    return (
+        f"try next: {own} view {log}    # this walk in the browser, with a slider\n"
+        f"          {own} replay --sample healthy    # a recorded person, scored by the firmware\n"
+        f"          {own} calibrate WALK.c3d --out person.toml    # the gait of a person you know"
+    )
 
 
 def level_times(recorder: "Recorder") -> str:

@@ -208,14 +208,17 @@ def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":
 
 
 def events_printer(wearer: "Wearer") -> Any:
-    """An observer that prints changes of mode, pushes and a fall."""
+    """An observer that prints changes of mode and level, pushes and a fall."""
     from saddlewalk.contract import MODES
     from saddlewalk.emulation.exoskeleton import Observer
+    from saddlewalk.ticks import scores_of
+    from saddlewalk.verdict import level_words
 
     class Events(Observer):
         def __init__(self) -> None:
             self._due = sorted(wearer.pushes, key=lambda push: push.time_s)
             self._mode: int | None = None
+            self._level = 0
             self._fallen = False
 
         def tick(self, tick: Any, wearer: "Wearer") -> None:
@@ -224,6 +227,10 @@ def events_printer(wearer: "Wearer") -> Any:
                 self._print(tick, MODES[tick.plan.mode])
             while self._due and self._due[0].time_s < tick.time_s:
                 self._print(tick, push_words(self._due.pop(0)))
+            scores = scores_of(tick.messages)
+            if scores["LEVEL"] != self._level and not self._fallen:
+                self._level = int(scores["LEVEL"])
+                self._print(tick, level_words(scores))
             if wearer.fallen and not self._fallen:
                 self._fallen = True
                 self._print(tick, "fell")

@@ -1,1 +1,1 @@
-"""The results of the paper (README, "What is from the paper"), reproduced from the C core."""
+"""The results of the paper (docs/paper.md), reproduced from the C core."""
