@@ -60,7 +60,7 @@ static void send(saddle_inbox_t *inbox, fuzz_bytes_t *bytes)
     }
 }
 
-/** A command with a fresh code is obeyed, and one whose code has a wrong bit is not. */
+/** A command with a fresh code is applied, and one whose code has a wrong bit is not. */
 static void command(saddle_inbox_t *inbox, fuzz_bytes_t *bytes)
 {
     static const uint8_t secret[SADDLE_CMAC_LENGTH] = {1, 2, 3};

@@ -212,7 +212,7 @@ class Run:
             sys.exit(f"{program.name} fails without a mutant")
         return monotonic() - began
 
-    def judge(self, mutant: Mutant) -> str:
+    def outcome(self, mutant: Mutant) -> str:
         """killed, survived, same (code) or invalid."""
         workshop = self.workshops.get()
         try:
@@ -253,7 +253,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         run = Run(Path(folder))
         with ThreadPoolExecutor(max_workers=WORKERS) as pool:
-            outcomes = list(pool.map(run.judge, drawn))
+            outcomes = list(pool.map(run.outcome, drawn))
     for mutant, outcome in sorted(zip(drawn, outcomes, strict=True)):
         if outcome == "survived":
             place = f"{mutant.file.relative_to(ROOT)}:{mutant.number + 1}"

@@ -186,8 +186,8 @@ def test_the_table_has_the_margin_as_lcm_has_it(walk):
         half_step = 1.01 * 0.5e-4  # of the CAN signals
         assert float(row["margin"]) == pytest.approx(message.margin, abs=half_step)
         assert float(row["caution_below"]) == pytest.approx(message.caution_below, abs=half_step)
-        told = float(row["recovery_margin_m"] or "nan")
-        assert told == pytest.approx(message.recovery_margin_m, abs=half_step, nan_ok=True)
+        shown_m = float(row["recovery_margin_m"] or "nan")
+        assert shown_m == pytest.approx(message.recovery_margin_m, abs=half_step, nan_ok=True)
         assert row["driver"] == REASONS[message.driver]
     assert len({row["driver"] for row in rows(walk)}) > 2
 
@@ -389,8 +389,12 @@ def test_emulate_ends_with_status_1_after_a_fall(ports, capsys):
 def test_an_interrupted_demo_keeps_its_logs_and_stops_the_firmware(tmp_path, ports, by):
     script = Path(sys.executable).with_name("saddlewalk")
     program = [str(script), "demo", "--out", str(tmp_path), *ports]
-    heed = functools.partial(signal.signal, by, signal.SIG_DFL)  # nohup's children ignore SIGHUP
-    with subprocess.Popen(program, stdout=subprocess.PIPE, text=True, preexec_fn=heed) as process:
+    default_action = functools.partial(
+        signal.signal, by, signal.SIG_DFL
+    )  # nohup's children ignore SIGHUP
+    with subprocess.Popen(
+        program, stdout=subprocess.PIPE, text=True, preexec_fn=default_action
+    ) as process:
         while "starting" not in process.stdout.readline():
             assert process.poll() is None
         time.sleep(0.5)

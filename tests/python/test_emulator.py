@@ -300,7 +300,7 @@ def test_a_wearer_who_stood_for_a_minute_walks_again():
 @pytest.mark.parametrize(("rolls", "steady"), [(False, True), (True, False)])
 def test_a_foot_is_measured_by_the_middle_of_its_sole(rolls, steady):
     """With the CoP that rolls from heel to toe in its place, a steady walk is called unstable."""
-    judge, levels = Core(default_config()), set()
+    supervisor, levels = Core(default_config()), set()
     wearer, schedule = Wearer(seed=1), schedule_of([(0.0, 1.4)], 0.17)
     for tick in closed_loop.walk(default_config(), wearer, schedule):
         if tick.time_s > 15:
@@ -309,11 +309,11 @@ def test_a_foot_is_measured_by_the_middle_of_its_sole(rolls, steady):
         cops[wearer._leading] = complex(wearer.cop_m.real, cops[wearer._leading].imag)
         rolling = tuple(cop - wearer.com_m for cop in cops)
         measured = replace(tick.measured, feet_m=rolling) if rolls else tick.measured
-        told = judge.tick(
+        output = supervisor.tick(
             round(tick.time_s * 1e6), schedule(tick.time_s), closed_loop.measurement_of(measured)
         )
         if tick.time_s > 5:
-            levels.add(told.verdict.level)
+            levels.add(output.verdict.level)
     assert (levels == {STABLE}) == steady
 
 

@@ -197,8 +197,10 @@ def values_of(output) -> dict[str, float]:
     values = {}
     for frame in frames:
         name = wire.message_name(frame.id)
-        told = can.Message(arbitration_id=frame.id, is_extended_id=False, data=bytes(frame.data))
-        signals = wire.signals(told)
+        restored = can.Message(
+            arbitration_id=frame.id, is_extended_id=False, data=bytes(frame.data)
+        )
+        signals = wire.signals(restored)
         values |= {f"{name}.{signal}": value for signal, value in signals.items()}
     room = ffi().new("uint8_t[]", library().SADDLE_LCM_MESSAGE_MAX)
     for part in range(library().SADDLE_LCM_OUTPUTS):
@@ -253,8 +255,8 @@ def test_a_field_reaches_only_its_own_signals(path):
     new = get(output, path) / (1e9 if path.endswith("_nm") else 1)
     found = differences(output)
     assert found.keys() == expected(path)
-    for name, told in found.items():
-        assert told == pytest.approx(new, abs=resolution(name))
+    for name, value in found.items():
+        assert value == pytest.approx(new, abs=resolution(name))
 
 
 def resolution(name: str) -> float:

@@ -52,8 +52,8 @@ def test_its_platform_is_in_its_name(wheel):
 
 def test_demo_walks_and_its_log_is_reported(site, tmp_path):
     ports = ["--lcm", "udpm://239.255.76.67:7699?ttl=0", "--can", "udp:239.74.163.2:43199"]
-    told = saddlewalk(site, tmp_path, "demo", "--clock", "lockstep", "--duration", "5", *ports)
-    assert "the same bits" in told and "BAD" not in told
+    printed = saddlewalk(site, tmp_path, "demo", "--clock", "lockstep", "--duration", "5", *ports)
+    assert "the same bits" in printed and "BAD" not in printed
     saddlewalk(site, tmp_path, "report", "out/demo/walk.lcmlog")
     assert (tmp_path / "out/demo/walk.lcmlog.html").stat().st_size > 10_000
 

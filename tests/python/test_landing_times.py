@@ -174,13 +174,13 @@ def last_of_swings(**fields: float) -> list[tuple[float, float, float]]:
     seen, heights = [], []
     for tick in range(150):
         speed = SPEED_M_S if tick < 110 else None
-        told = firmware.tick(round(tick * TICK_S * 1e6), Command(speed), Measurement()).plan
+        planned = firmware.tick(round(tick * TICK_S * 1e6), Command(speed), Measurement()).plan
         for step in range(80):
             time_us = round(tick * TICK_S * 1e6) + step * 1000
             library().saddle_plan_at(firmware._context, time_us, plan)
             foot = plan.foot_m[1 - plan.support]
             heights.append(foot.z)
-            if told.speed_m_s > 0 and abs(plan.time_to_toe_off_s - 0.06) < 5e-4:
+            if planned.speed_m_s > 0 and abs(plan.time_to_toe_off_s - 0.06) < 5e-4:
                 left_m = plan.landing_m.x - foot.x
                 if left_m > 0.04:  # the first swing is a slower half
                     seen.append((left_m, foot.z, plan.swing_velocity_m_s.z))

@@ -180,12 +180,12 @@ def test_a_plan_alone_tells_the_reference_of_the_ticks_to_come():
         support, mode = output.plan.support, output.plan.mode
         for step in range(0, STEPS_A_TICK, 8):
             library().saddle_plan_at(firmware._context, time_us + step * 1000, plan)
-            told = firmware.reference_after(ffi().addressof(output.plan), step * STEP_S)
+            later = firmware.reference_after(ffi().addressof(output.plan), step * STEP_S)
             if step == 0:
                 same = ffi().addressof(output.plan, "reference")
-                assert bytes(ffi().buffer(told)) == bytes(ffi().buffer(same))
+                assert bytes(ffi().buffer(later)) == bytes(ffi().buffer(same))
             if (plan.support, plan.mode) == (support, mode):
-                (now, then) = complexes(plan.reference.xcom_m, told.xcom_m)
+                (now, then) = complexes(plan.reference.xcom_m, later.xcom_m)
                 worst = max(worst, abs(now - then))
     # The end of a change of speed within a tick is not foreseen.
     assert worst < 0.012

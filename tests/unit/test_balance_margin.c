@@ -181,7 +181,7 @@ static void test_margin_of_random_walks_is_that_of_the_equations(void)
     }
 }
 
-/* Offsets of a standing CoM, in its height of 1 m: 0.336 is borne (ripple 0.035), and 0.02 more by
+/* Offsets of a standing CoM, in its height of 1 m: 0.336 is tolerated (ripple 0.035), and 0.02 more by
  * feet that are 0.2 m apart. */
 static void test_level_and_reason_follow_the_margin(void)
 {
@@ -345,7 +345,7 @@ static void test_steady_walk_is_learned(void)
     TEST_ASSERT_TRUE(output.walk.step_margin > 0.2f && output.walk.step_margin < 0.42f);
 }
 
-/* A walker of even speed bears more: 2.4 of the ripple, between the two bounds. */
+/* A walker of even speed tolerates more: 2.4 of the ripple, between the two bounds. */
 /* Its length is not known where the other foot was not measured. */
 static void test_step_without_a_length_is_not_learned(void)
 {
@@ -361,14 +361,14 @@ static void test_step_without_a_length_is_not_learned(void)
 static void test_tolerance_is_the_walkers_own(void)
 {
     const float starts[] = {0.005f, 0.035f, 0.06f, 0.2f};
-    const double borne[] = {0.42 - 2.4 * 0.005, 0.42 - 2.4 * 0.035, 0.42 - 2.4 * 0.06, 0.25};
+    const double tolerated[] = {0.42 - 2.4 * 0.005, 0.42 - 2.4 * 0.035, 0.42 - 2.4 * 0.06, 0.25};
     for (size_t i = 0; i < COUNT_OF(starts); i++) {
         const saddle_measurement_t seen = standing();
         setUp();
         config.learn_ripple_start = starts[i];
         saddle_init(&context, &config);
         tick(&seen);
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, borne[i] + 0.02, output.verdict.margin);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, tolerated[i] + 0.02, output.verdict.margin);
     }
 }
 

@@ -1,4 +1,4 @@
-/** Joint commands against statics in double and against what no drive may ever be told. */
+/** Joint commands against statics in double, and against the limits of the drives. */
 #include "core_test.h"
 
 #include <saddlewalk/joint_command.h>
@@ -218,7 +218,7 @@ static void test_ankles_keep_the_cop_in_the_sole(void)
     TEST_ASSERT_TRUE(commands.joint[0][SADDLE_ANKLE_PITCH].torque_max_nm < 10.0f);
 }
 
-/* ---- what no drive may ever be told ---------------------------------------------------------- */
+/* ---- the limits of the drives ---------------------------------------------------------------- */
 
 static void assert_within_limits(void)
 {

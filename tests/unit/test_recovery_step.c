@@ -1,5 +1,5 @@
 /** Where a foot can be put to catch the XCoM, against a search over all places, and what moving the
- *  CoP can mend until then. */
+ *  CoP can correct until then. */
 #include "balance_twin.h"
 
 #include "balance/expected_step.h"
@@ -443,10 +443,10 @@ static void test_step_stops_where_the_xcom_lies_in_the_base_of_its_posture(void)
     TEST_ASSERT_TRUE(stops > MANY(100) && stops < found - MANY(100));
 }
 
-/* ---- what moving the CoP can mend ---------------------------------------------------------- */
+/* ---- what moving the CoP corrects ---------------------------------------------------------- */
 
 /* xi' = w (xi - u): the CoP as far towards the deviation as it can be, in small steps. */
-static double mended_by_simulation(double xi, double foot, double trailing, double time_s)
+static double corrected_by_simulation(double xi, double foot, double trailing, double time_s)
 {
     const int steps = 20000;
     const double h = time_s / steps;
@@ -469,20 +469,20 @@ static float least_after(float deviation_m, saddle_cop_shift_t shift, float time
 static void test_least_deviation_is_that_with_the_best_cop(void)
 {
     uint32_t state = 89;
-    int mended = 0;
+    int corrected = 0;
     for (int i = 0; i < MANY(300); i++) {
         const float deviation = random_in(&state, -0.3f, 0.3f);
         const float time_s = random_in(&state, 0.0f, 0.6f);
         const saddle_cop_shift_t shift = {.foot_m = random_in(&state, 0.0f, 0.1f),
                                           .trailing_m =
                                               i % 3 == 0 ? 0.0f : random_in(&state, -0.5f, 0.5f)};
-        const double expected = mended_by_simulation((double)deviation, (double)shift.foot_m,
-                                                     (double)shift.trailing_m, (double)time_s);
+        const double expected = corrected_by_simulation((double)deviation, (double)shift.foot_m,
+                                                        (double)shift.trailing_m, (double)time_s);
         const double least = (double)least_after(deviation, shift, time_s);
         TEST_ASSERT_DOUBLE_WITHIN(5e-4, expected, least); /* of up to 1.9 m; in steps of 30 us */
-        mended += expected == 0.0 ? 1 : 0;
+        corrected += expected == 0.0 ? 1 : 0;
     }
-    TEST_ASSERT_TRUE(mended > MANY(50) && mended < MANY(200));
+    TEST_ASSERT_TRUE(corrected > MANY(50) && corrected < MANY(200));
 }
 
 static void test_without_a_shift_a_deviation_grows_freely(void)

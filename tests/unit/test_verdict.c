@@ -561,7 +561,7 @@ static void test_planned_shift_of_weight_is_the_reference_while_it_leads(void)
 }
 
 /* The foot on the side to which the XCoM departs makes the step, from where it stands to as far off
- * as the XCoM will have departed, but for what the CoP mends. */
+ * as the XCoM will have departed, except for what the CoP can correct. */
 static void test_standing_person_steps_to_the_side_of_the_push(void)
 {
     const double growth = exp(FREQUENCY * (double)config.prediction_horizon_s);

@@ -25,8 +25,8 @@ def planned(plan: Any, core: Core, recovery: RecoveryStep | None = None) -> Plan
     ffi().memmove(kept, ffi().addressof(plan), ffi().sizeof(kept[0]))
 
     def reference(after_s: float) -> Reference:
-        told = core.reference_after(kept, after_s)
-        return Reference(_point(told.cop_m), _point(told.xcom_m))
+        predicted = core.reference_after(kept, after_s)
+        return Reference(_point(predicted.cop_m), _point(predicted.xcom_m))
 
     return Plan(
         mode=plan.mode,

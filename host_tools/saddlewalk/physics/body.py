@@ -12,7 +12,7 @@ from saddlewalk.config import ANKLES
 from saddlewalk.contract import GRAVITY_M_S2, SIDES
 
 TIMESTEP_S = 1e-3
-# Contacts: as stiff as a step of 1 ms bears, November 2026; friction of a shoe on a dry floor.
+# Contacts: as stiff as a step of 1 ms allows, November 2026; friction of a shoe on a dry floor.
 SOLREF, SOLIMP = (0.008, 1.0), (0.9, 0.99, 0.002, 0.5, 2.0)
 FRICTION = (1.0, 0.005, 0.0001)
 CORNER_RADIUS_M = 0.01

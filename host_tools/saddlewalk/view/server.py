@@ -101,7 +101,7 @@ class LogTicks:
 class Server:
     """Serves one source of ticks to any number of pages.
 
-    hello: what a page is told first, beside the names of a row. control: receives what the pages
+    hello: what a page receives first, beside the names of a row. control: receives what the pages
     command; None: they cannot.
     """
 
@@ -182,7 +182,7 @@ class Server:
             sender.cancel()
 
     def _take(self, text: str | bytes, queue: "asyncio.Queue[str | bytes]") -> None:
-        """What a page sent. Anything else is not heeded."""
+        """What a page sent. Anything else is ignored."""
         try:
             asked = json.loads(text)
         except ValueError:

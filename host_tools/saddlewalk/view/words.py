@@ -1,4 +1,4 @@
-"""What a page is told first: names and sentences, from the one place where each is written."""
+"""What a page receives first: names and sentences, from the one place where each is written."""
 
 from typing import Any
 

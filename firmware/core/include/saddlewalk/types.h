@@ -109,7 +109,7 @@ typedef struct {
     float departure_lateral_weight; /**< of a departure across, [E33] */
     float departure_step_share;     /**< of half the distance of the feet: no departure, [E33] */
     float departure_sink_share;     /**< of a sinking CoM's velocity that is, [E33] */
-    float tolerance_max;            /**< departure that a walker of even speed bears, [E34] */
+    float tolerance_max;            /**< departure that a walker of even speed tolerates, [E34] */
     float tolerance_ripple_slope;   /**< less tolerance per ripple of the speed, [E34] */
     float tolerance_min;            /**< and no less than this, [E34] */
     float plan_weight;    /**< of what the step to come can do, for a wearer on a plan, [E35] */

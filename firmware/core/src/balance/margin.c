@@ -50,8 +50,8 @@ saddle_departure_t saddle_departure(const saddle_model_t *model, const saddle_le
 /* [E34] */
 static float tolerance(const saddle_config_t *config, float ripple)
 {
-    const float borne = config->tolerance_max - config->tolerance_ripple_slope * ripple;
-    return saddle_larger(borne, config->tolerance_min);
+    const float tolerated = config->tolerance_max - config->tolerance_ripple_slope * ripple;
+    return saddle_larger(tolerated, config->tolerance_min);
 }
 
 float saddle_own_margin(const saddle_model_t *model, const saddle_learning_t *learning,

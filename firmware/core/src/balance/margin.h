@@ -10,7 +10,7 @@
 typedef struct {
     saddle_vec2_t offset; /**< of the CoM, predicted, from midway between the feet; across it is
                                weighted */
-    float step;           /**< what the distance of the feet bears */
+    float step;           /**< what the distance of the feet tolerates */
     float sinking;        /**< how fast the CoM sinks, now and at the height before, at least 0: a
                                height that jumps once is no collapse */
     float sink;           /**< the part of a departure that sinking is */

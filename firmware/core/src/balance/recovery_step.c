@@ -85,6 +85,6 @@ float saddle_least_deviation_m(float deviation_m, saddle_cop_shift_t shift,
     const float foot_m = shift.foot_m * (growth->factor - 1.0f);
     const float trailing_m = saddle_magnitude(shift.trailing_m) * growth->trailing;
     const bool towards_trailing = deviation_m * shift.trailing_m > 0.0f;
-    const float mended_m = towards_trailing ? foot_m + trailing_m : foot_m;
-    return grown_m - saddle_clamp(grown_m, -mended_m, mended_m);
+    const float corrected_m = towards_trailing ? foot_m + trailing_m : foot_m;
+    return grown_m - saddle_clamp(grown_m, -corrected_m, corrected_m);
 }

@@ -4,7 +4,7 @@
 #include "math/elementary.h"
 #include "space/vec3.h"
 
-/* What one sample needs to be judged. */
+/* What the check of one sample needs. */
 typedef struct {
     const saddle_estimator_config_t *config;
     saddle_joint_range_t range;
@@ -44,7 +44,7 @@ static bool is_frozen(const frame_t *frame, saddle_encoder_t *encoder, float rad
 }
 
 /* [J15] Whether it is lost. */
-static bool judge(const frame_t *frame, saddle_encoder_t *encoder, float rad, bool stale)
+static bool check_encoder(const frame_t *frame, saddle_encoder_t *encoder, float rad, bool stale)
 {
     const bool usable = !stale && in_range(frame, rad);
     const bool bad = !usable || leaps(frame, encoder, rad) || is_frozen(frame, encoder, rad);
@@ -87,8 +87,8 @@ uint32_t saddle_encoders_update(saddle_estimator_t *estimator, const saddle_sens
                                estimator->sole_m[side],
                                joint >= SADDLE_HIP_PITCH && joint <= SADDLE_ANKLE_PITCH, dt_s};
         const bool stale = sensors->joints_age_us[side] > max_age_us;
-        if (judge(&frame, &estimator->encoder[side][joint], sensors->angle_rad[side][joint],
-                  stale)) {
+        if (check_encoder(&frame, &estimator->encoder[side][joint], sensors->angle_rad[side][joint],
+                          stale)) {
             lost |= SADDLE_JOINT_BIT(side, joint);
         }
     }
