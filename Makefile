@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller coverage prove fuzz mutants test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground site release samples physics bench-baselines format lint clean help
+.PHONY: build demo amalgamation controller coverage prove fuzz mutants soak test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground site release samples physics bench-baselines format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -64,6 +64,9 @@ mutants: build .venv/installed-test ## whether the unit tests notice changed cod
 	@$(BIN)/ninja -C build --quiet tests
 	@$(BIN)/python tests/mutants/mutate.py wire $(or $(SAMPLE),60) $(SEED) 90
 	@$(BIN)/python tests/mutants/mutate.py core $(or $(SAMPLE),150) $(SEED) 75
+
+soak: build .venv/installed-test ## hours of walks against one host process; make soak HOURS=24
+	@$(BIN)/python tests/soak/soak.py $(or $(HOURS),0.5)
 
 SECONDS := 60
 SEED := $(shell date +%j)
