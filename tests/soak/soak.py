@@ -4,8 +4,8 @@ usage: soak.py HOURS [SEED]
 
 HOURS are of the firmware's time. Every walk has random speeds, stops, pushes and a new wearer, who
 may fall; between its frames come others that no sender of measurements made: of any identifier and
-length, and damaged copies. Fails if memory or open files of the host process grow, if damaged frames
-are not rejected, or if the process stops answering or does not end cleanly.
+length, and damaged copies. Fails if memory or open files of the host process grow, if no frame is
+rejected, or if the process stops answering or does not end cleanly.
 """
 
 import math
