@@ -46,17 +46,16 @@ static uint32_t mask_of(size_t signal)
  *  the range becomes an integer. Inlined at each of its calls it would double the wire. */
 static SADDLE_NOINLINE uint32_t raw_of(bool valid, float value, float half_step)
 {
-    const float halves = __builtin_fabsf(value / half_step);
-    uint32_t steps = INT16_MAX;
-    if (!valid || halves != halves) {
+    const float halves = value / half_step;
+    if (valid && __builtin_fabsf(halves) <= HALVES_MAX) {
+        const uint32_t whole = (uint32_t)(int32_t)halves;
+        const uint32_t negative = whole >> 31; /* whose half alone is away from 0 */
+        return (whole + 1u - negative) / 2u & UINT16_MAX;
+    }
+    if (!valid || !is_finite(value)) {
         return (uint16_t)NOT_AVAILABLE;
     }
-    if (halves <= HALVES_MAX) {
-        steps = ((uint32_t)halves + 1u) / 2u;
-    } else if (!is_finite(value)) {
-        return (uint16_t)NOT_AVAILABLE;
-    }
-    return (value < 0.0f ? 0u - steps : steps) & UINT16_MAX;
+    return (uint16_t)(value < 0.0f ? -INT16_MAX : INT16_MAX);
 }
 
 static float number_of(const signal_t *signal, uint64_t bits)
