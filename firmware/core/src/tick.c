@@ -108,18 +108,21 @@ static void read_intent(const saddle_planner_t *planner, const saddle_plan_t *pl
     const saddle_vec3_t *other_m = &plan->foot_m[saddle_other_side(stance)];
     intent->leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u;
     intent->walking = plan->speed_m_s > 0.0f;
-    intent->step.stance = stance;
     intent->step.speed_m_s = plan->speed_m_s;
+    if (!intent->walking) {
+        intent->com.com_m.x = plan->com_m.x - (stance_m->x + 0.5f * (other_m->x - stance_m->x));
+        intent->com.com_m.y = plan->com_m.y - (stance_m->y + 0.5f * (other_m->y - stance_m->y));
+        intent->com.velocity_m_s.x = plan->com_velocity_m_s.x;
+        intent->com.velocity_m_s.y = plan->com_velocity_m_s.y;
+        return;
+    }
+    intent->step.stance = stance;
     intent->step.half_behind_m = 0.5f * plan->step_length_m;
     intent->step.width_behind_m = plan->step_width_m;
     intent->step.landing_m.x = plan->landing_m.x;
     intent->step.landing_m.y = plan->landing_m.y - stance_m->y;
     intent->place.x_m = plan->com_m.x;
     intent->place.phase = saddle_planner_phase(planner);
-    intent->com.com_m.x = plan->com_m.x - (stance_m->x + 0.5f * (other_m->x - stance_m->x));
-    intent->com.com_m.y = plan->com_m.y - (stance_m->y + 0.5f * (other_m->y - stance_m->y));
-    intent->com.velocity_m_s.x = plan->com_velocity_m_s.x;
-    intent->com.velocity_m_s.y = plan->com_velocity_m_s.y;
 }
 
 /* The plan under the command, or under a stand where the inputs are lost. Its feet are measured as far
