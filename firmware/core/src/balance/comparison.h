@@ -31,8 +31,8 @@ typedef struct {
 void saddle_compare_nothing(saddle_verdict_t *verdict);
 
 /** Compare with what is planned; without a command, with the walk of the last step or standing. Feet
- *  and CoM are known and the BoS is defined. Writes to a cleared verdict all but level and reason,
- *  nothing if there is no walk to compare with. Returns whether the wearer does as planned: makes the
+ *  and CoM are known and the BoS is defined. Sets verdict->compared and writes all that goes with it,
+ *  or nothing if there is no walk to compare with. Returns whether the wearer does as planned: makes the
  *  planned step on its stance foot, or is to stand. */
 bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
                     const saddle_intent_t *intent, saddle_verdict_t *verdict);

@@ -153,11 +153,14 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     saddle_support_t support;
     saddle_score_posture(model, &posture, scores, &support);
     const uint32_t faults = sensed->faults | saddle_score_faults(known, scores);
-    saddle_compare_nothing(verdict);
     bool on_plan = false;
+    verdict->compared = false;
     if (is_measured(known) && scores->bos.defined) {
         const saddle_wearer_t wearer = {steps, sensed->measurement, &posture, scores, &support};
         on_plan = saddle_compare(model, &wearer, intent, verdict);
+    }
+    if (!verdict->compared) {
+        saddle_compare_nothing(verdict);
     }
     follow_margin(supervisor, model, sensed, on_plan, verdict);
     saddle_level_update(&supervisor->level, model, faults, scores, verdict);
