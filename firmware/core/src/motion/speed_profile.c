@@ -90,7 +90,7 @@ saddle_pace_t saddle_pace(const saddle_speed_profile_t *profile)
     pace.speed_m_s = profile->speed_m_s;
     pace.target_m_s = profile->target_m_s;
     pace.acceleration_m_s2 =
-        profile->target < profile->speed ? -profile->rate_m_s2 : profile->rate_m_s2;
+        pace.target_m_s < pace.speed_m_s ? -profile->rate_m_s2 : profile->rate_m_s2;
     pace.change_m = change_distance_m(&pace);
     pace.change_s =
         pace.change_m > 0.0f ? even_change_s(pace.speed_m_s, pace.target_m_s, pace.change_m) : 0.0f;
