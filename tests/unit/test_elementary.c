@@ -318,6 +318,17 @@ static void test_exp(void)
     expect_outside(saddle_exp, 88.0f, 0.0f, EXP_GREATEST, 0.0f);
 }
 
+/** Every 997th float within the range and beyond it. */
+static void test_decay(void)
+{
+    for (uint32_t bits = 0; bits < bits_of(INFINITY); bits += 997u) {
+        const float x = float_of(bits);
+        const float wanted = saddle_exp(x < 40.0f ? -x : -40.0f);
+        expect(bits_of(saddle_decay(x)) == bits_of(wanted), "decay", x);
+    }
+    expect_outside(saddle_decay, 40.0f, 1.0f, saddle_exp(-40.0f), 1.0f);
+}
+
 static void test_log(void)
 {
     walk(&LOG);
@@ -383,13 +394,13 @@ static const struct {
     const char *name;
     void (*run)(void);
 } TESTS[] = {
-    {"sin", test_sin},           {"cos", test_cos},
-    {"sin_cos", test_sin_cos},   {"asin", test_asin},
-    {"erf", test_erf},           {"erf_saturation", test_erf_saturation},
-    {"exp", test_exp},           {"log", test_log},
-    {"min_jerk", test_min_jerk}, {"min_jerk_slope", test_min_jerk_slope},
-    {"clamp", test_clamp},       {"in_range", test_in_range},
-    {"ends", test_ends},
+    {"sin", test_sin},         {"cos", test_cos},
+    {"sin_cos", test_sin_cos}, {"asin", test_asin},
+    {"erf", test_erf},         {"erf_saturation", test_erf_saturation},
+    {"exp", test_exp},         {"decay", test_decay},
+    {"log", test_log},         {"min_jerk", test_min_jerk},
+    {"clamp", test_clamp},     {"min_jerk_slope", test_min_jerk_slope},
+    {"ends", test_ends},       {"in_range", test_in_range},
 };
 
 int main(int argc, char **argv)

@@ -55,6 +55,7 @@ static const uint32_t ONE_BITS = 0x3F800000u;
 static const uint32_t SQRT_HALF_BITS = 0x3F3504F3u;
 static const float EXP_LOWEST = -87.0f;
 static const float EXP_HIGHEST = 88.0f;
+static const float DECAY_GONE = 40.0f;
 static const float ERF_SATURATION = 4.0f;
 
 static float sin_of_eighth(float r)
@@ -155,6 +156,12 @@ float saddle_exp(float x)
         return 0.0f;
     }
     const exp_parts_t e = exp_parts(x > EXP_HIGHEST ? EXP_HIGHEST : x);
+    return e.scale * (1.0f + e.fraction);
+}
+
+float saddle_decay(float x)
+{
+    const exp_parts_t e = exp_parts(-saddle_clamp(x, 0.0f, DECAY_GONE));
     return e.scale * (1.0f + e.fraction);
 }
 

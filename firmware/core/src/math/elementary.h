@@ -53,6 +53,9 @@ float saddle_erf(float x);
  */
 float saddle_exp(float x);
 
+/** saddle_exp(-x) of x limited to [0, 40], which is never 0; NaN counts as 0. */
+float saddle_decay(float x);
+
 /**
  * Natural logarithm of a normal x > 0; 0 for any other, as NaN. Exactly 0 at 1. Error at most 5.0e-6,
  * relative 2.0e-7.

@@ -16,9 +16,6 @@
 /* And how far behind it, of half the length, if the other foot stands behind. */
 #define STANDING_BEHIND 0.67f
 
-/* What decays by more than exp(-40) has gone. */
-#define EXPONENT_MAX 40.0f
-
 /* Speed at a landing that is nearer than this is the present one. */
 #define LANDING_NOW_S 1.0e-3f
 
@@ -62,17 +59,12 @@ typedef struct {
     float speed_rate; /* of the XCoM, per relative change of speed */
 } state_t;
 
-static float decay(float exponent)
-{
-    return saddle_exp(-saddle_smaller(exponent, EXPONENT_MAX));
-}
-
 static decay_t decay_in(float kappa, float share)
 {
     decay_t decay_of;
     decay_of.kappa = kappa;
-    decay_of.crossing = decay(kappa * share);
-    decay_of.rolling = decay(kappa * (1.0f - share));
+    decay_of.crossing = saddle_decay(kappa * share);
+    decay_of.rolling = saddle_decay(kappa * (1.0f - share));
     decay_of.step = decay_of.crossing * decay_of.rolling;
     return decay_of;
 }
@@ -89,7 +81,7 @@ static void phase_of(const saddle_model_t *model, const step_t *step, phase_t *p
     phase->next = length_m == step->next_m.x ? phase->now : decay_in(per_m * step->next_m.x, share);
     phase->crosses = step->progress < share;
     phase->since_end = step->progress - (phase->crosses ? share : 1.0f);
-    phase->growth = decay(-phase->now.kappa * phase->since_end);
+    phase->growth = saddle_decay(-phase->now.kappa * phase->since_end);
 }
 
 /* [E39] */
@@ -323,9 +315,9 @@ static void begin_walk(const saddle_model_t *model, const saddle_plan_t *plan, f
     }
     first.left_s -= after_s;
     first.elapsed_s += after_s;
-    first.elapsed = decay(w * first.elapsed_s);
-    first.left = decay(w * first.left_s);
-    first.whole = decay(w * (first.elapsed_s + first.left_s));
+    first.elapsed = saddle_decay(w * first.elapsed_s);
+    first.left = saddle_decay(w * first.left_s);
+    first.whole = saddle_decay(w * (first.elapsed_s + first.left_s));
     motion_t landed, motion;
     motion_in(model, &next, &landed);
     fall(first.begin_m.x, step.next_m.x + landed.x.advancing, model->config.cop_range_m, &first,
@@ -351,13 +343,13 @@ static last_swing_t last_swing_of(const saddle_model_t *model, float elapsed_s, 
     last.w = w;
     last.crossing_s = model->config.double_support_share * (elapsed_s + left_s);
     last.share = saddle_smaller(elapsed_s / last.crossing_s, 1.0f);
-    last.crossing = decay(w * last.crossing_s);
-    last.standing = decay(w * (elapsed_s + left_s - last.crossing_s));
+    last.crossing = saddle_decay(w * last.crossing_s);
+    last.standing = saddle_decay(w * (elapsed_s + left_s - last.crossing_s));
     if (last.share < 1.0f) {
-        last.growth = decay(w * (last.crossing_s - elapsed_s));
+        last.growth = saddle_decay(w * (last.crossing_s - elapsed_s));
         last.recedes = last.crossing / last.growth;
     } else {
-        last.growth = decay(w * left_s);
+        last.growth = saddle_decay(w * left_s);
         last.recedes = last.standing / last.growth;
     }
     return last;
