@@ -116,16 +116,14 @@ static place_t place_at(const saddle_cycle_t *cycle, const place_t *reference, f
     };
 }
 
-/* Give the running quarter, at a phase, a new shape; what it changes at the CoM fades out until its
- * end. */
-static void reshape(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_quarter_t quarter,
-                    saddle_sin_cos_t phase, const place_t *actual)
+/* The running quarter, at a phase, has a new shape; what it changes at the CoM fades out until its end. */
+static void follow_shape(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_sin_cos_t phase,
+                         const place_t *actual)
 {
     const float x_m = cycle->x_m;
     const bool before = saddle_cycle_before_landing(cycle);
-    const float rest_m = before ? quarter.length_m - x_m : -x_m;
-    cycle->quarter = quarter;
-    cycle->swing.path_width_m = quarter.width_m;
+    const float rest_m = before ? cycle->quarter.length_m - x_m : -x_m;
+    cycle->swing.path_width_m = cycle->quarter.width_m;
     const place_t reference = reference_at(cycle, model, phase);
     cycle->lateral = saddle_blend(actual->lateral, reference.lateral, x_m, rest_m);
     if (model->config.ankle == SADDLE_ANKLE_CYCLOID) {
@@ -161,10 +159,9 @@ static SADDLE_NOINLINE void pass_foot(saddle_cycle_t *cycle, const saddle_model_
     cycle->phase = (uint8_t)((cycle->phase + 1u) % 4u);
     cycle->stride_count += cycle->phase == 0u ? 1u : 0u;
     cycle->quarter_length = saddle_half_step(model, saddle_other_side(stance), speed);
-    reshape(cycle, model,
-            saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
-                           saddle_magnitude(cycle->swing.line_y_m), speed_m_s),
-            SADDLE_PHASE_FOOT, &actual);
+    cycle->quarter = saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
+                                    saddle_magnitude(cycle->swing.line_y_m), speed_m_s);
+    follow_shape(cycle, model, SADDLE_PHASE_FOOT, &actual);
     if (model->config.swing_skew > 0.0f) {
         const float share = 2.0f * saddle_swing_share(&model->body.swing, 0.5f).value - 1.0f;
         cycle->swing.stretch_m = 2.0f * (old_half_m - cycle->quarter.length_m) * share;
@@ -266,10 +263,10 @@ static void begin_step(saddle_cycle_t *cycle, const saddle_model_t *model, const
     move_to(cycle, -landing->behind);
     cycle->origin_x_nm += landing->step_nm;
     cycle->stance_y_m += landing->step_m.y;
-    reshape(cycle, model,
-            saddle_quarter(model, saddle_other_side(cycle->quarter.stance), landing->behind_m,
-                           saddle_magnitude(landing->step_m.y), speed_m_s),
-            SADDLE_PHASE_LANDED, &place);
+    cycle->quarter =
+        saddle_quarter(model, saddle_other_side(cycle->quarter.stance), landing->behind_m,
+                       saddle_magnitude(landing->step_m.y), speed_m_s);
+    follow_shape(cycle, model, SADDLE_PHASE_LANDED, &place);
     lift_off(cycle, model, lifted_m, speed_m_s, SADDLE_PHASE_LANDED);
 }
 
@@ -319,7 +316,7 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
         cycle->quarter = saddle_quarter(model, stance, cycle->quarter.length_m,
                                         saddle_magnitude(cycle->swing.line_y_m), speed_m_s);
     }
-    reshape(cycle, model, cycle->quarter, phase, &actual);
+    follow_shape(cycle, model, phase, &actual);
     if (start->under_way) {
         cycle->swing.lift_progress = 0.0f;
         cycle->lateral.length_m = 0.0f;
@@ -553,11 +550,10 @@ SADDLE_NOINLINE bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model
     cycle->stance_y_m += dy_m;
     cycle->last_step_m = step_m;
     const float speed_m_s = cycle->profile.speed_m_s;
-    const saddle_quarter_t quarter =
-        saddle_quarter(model, stance, length_m, saddle_magnitude(step_m.y), speed_m_s);
+    cycle->quarter = saddle_quarter(model, stance, length_m, saddle_magnitude(step_m.y), speed_m_s);
     const saddle_sin_cos_t phase = saddle_quarter_phase(length_m, cycle->x_m);
     set_phase(cycle, phase);
-    reshape(cycle, model, quarter, phase, &place);
+    follow_shape(cycle, model, phase, &place);
     redirect_swing(cycle, model, swing_m, speed_m_s, phase);
     return true;
 }
