@@ -247,14 +247,14 @@ typedef struct {
     float behind_m;
 } landing_t;
 
-/* The swing foot has landed, with the CoM at a place from the old stance foot: it carries from now on. */
+/* The swing foot has landed, with the CoM at a place from the old stance foot, hereafter from the new
+ * one: it carries from now on. */
 static void begin_step(saddle_cycle_t *cycle, const saddle_model_t *model, const landing_t *landing,
-                       const place_t *at_landing, float speed_m_s)
+                       place_t *place, float speed_m_s)
 {
     const saddle_vec2_t lifted_m = {-landing->step_m.x, -landing->step_m.y};
-    place_t place = *at_landing;
-    cycle->lift_pitch_rad = toe_off_angle_rad(cycle, model, &place);
-    place.lateral.value -= landing->step_m.y;
+    cycle->lift_pitch_rad = toe_off_angle_rad(cycle, model, place);
+    place->lateral.value -= landing->step_m.y;
     cycle->last_step_m = landing->step_m;
 
     cycle->phase++;
@@ -266,7 +266,7 @@ static void begin_step(saddle_cycle_t *cycle, const saddle_model_t *model, const
     cycle->quarter =
         saddle_quarter(model, saddle_other_side(cycle->quarter.stance), landing->behind_m,
                        saddle_magnitude(landing->step_m.y), speed_m_s);
-    follow_shape(cycle, model, SADDLE_PHASE_LANDED, &place);
+    follow_shape(cycle, model, SADDLE_PHASE_LANDED, place);
     lift_off(cycle, model, lifted_m, speed_m_s, SADDLE_PHASE_LANDED);
 }
 
@@ -274,8 +274,7 @@ static void begin_step(saddle_cycle_t *cycle, const saddle_model_t *model, const
 static SADDLE_NOINLINE void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model,
                                         saddle_fixed_t speed)
 {
-    const place_t place =
-        reference_at(cycle, model, SADDLE_PHASE_LANDING); /* no mismatch is left */
+    place_t place = reference_at(cycle, model, SADDLE_PHASE_LANDING); /* no mismatch is left */
     const landing_t landing = {
         .step_m = {2.0f * cycle->quarter.length_m, cycle->swing.line_y_m},
         .step_nm = 2 * saddle_position_to_nm(cycle->quarter_length),
