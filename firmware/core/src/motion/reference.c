@@ -470,8 +470,8 @@ static void stand(const saddle_model_t *model, const saddle_plan_t *plan, float 
     support(model, plan, reference);
 }
 
-SADDLE_NOINLINE void saddle_reference(const saddle_model_t *model, const saddle_plan_t *plan, float after_s,
-                      saddle_reference_t *reference)
+SADDLE_NOINLINE void saddle_reference(const saddle_model_t *model, const saddle_plan_t *plan,
+                                      float after_s, saddle_reference_t *reference)
 {
     if (plan->step_length_m == 0.0f) { /* no step is under way */
         stand(model, plan, after_s, reference);
