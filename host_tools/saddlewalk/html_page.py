@@ -15,6 +15,16 @@ th, td { padding: .25em .7em; border-bottom: 1px solid #ddd; text-align: left;
          vertical-align: top; }
 th { border-bottom: 2px solid #888; }
 td strong { color: #b03000; }
+@page { size: A4; margin: 12mm; }
+@media print {
+    body { font-size: 11px; line-height: 1.35; max-width: none; margin: 0; padding: 0; }
+    h1 { font-size: 18px; margin: 0; }
+    h2 { font-size: 14px; margin: 1em 0 .3em; break-after: avoid; }
+    table { font-size: 10px; margin: .5em 0; }
+    tr, img { break-inside: avoid; }
+    img { display: block; max-height: 82mm; margin: 0 auto; }
+    .on-screen { display: none; }
+}
 """
 
 
@@ -35,6 +45,11 @@ def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """A Markdown table; cells are Markdown."""
     lines = [header, ["---"] * len(header), *rows]
     return "\n".join(f"| {' | '.join(map(_cell, line))} |" for line in lines) + "\n"
+
+
+def on_screen(markdown: str) -> str:
+    """A part that is not printed."""
+    return f'<div class="on-screen">\n\n{markdown}\n\n</div>\n'
 
 
 def picture(name: str, caption: str) -> str:

@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from page import chromium
 from saddlewalk.cli import main
 from saddlewalk.contract import LEVELS, SIDES, TICK_S
 from saddlewalk.logs.messages import decode
 from saddlewalk.session import page as session_page
 from saddlewalk.session import pictures
 from saddlewalk.session.runs import load_session
-from saddlewalk.session.steps import variability
+from saddlewalk.session.steps import variability, walked
 from saddlewalk.transport.lcm_log import Event, LcmLog
 from saddlewalk.verdict import reason_words
 
@@ -230,6 +231,37 @@ def test_variability_is_that_of_the_sample():
     assert math.isnan(variability([1.0]).sd) and math.isnan(variability([]).mean)
 
 
+def test_what_was_seen_is_in_sentences(walk, page):
+    steps = walked(load_session(walk / "walk.lcmlog").runs[0]).steps
+    steady = steps.where(steps.steady)
+    cadence, speed_m_s = 60 / steady.time_s.mean(), steady.speed_m_s
+    assert (
+        f"The person took {len(steps)} steps in 13 s and covered 13.1 m. The steady steps came at "
+        f"{cadence:.0f} a minute, at {speed_m_s:.1f} m/s." in page.text
+    )
+    assert "Balance was stable for 100% of the time, without an alarm." in page.text
+    left, right = (steady.length_m[steady.side == side].mean() for side in (0, 1))
+    longer, percent = "left" if left > right else "right", 200 * abs(left - right) / (left + right)
+    assert f"The {longer} foot's steps were longer by {percent:.0f} %, which is not" in page.text
+
+
+def test_the_clinicians_part_prints_on_two_pages(walk, tmp_path):
+    def alarm(tick, verdict):
+        verdict.level, verdict.reason = (3, 3) if 100 <= tick < 110 else (1, 0)
+
+    log = write_events(tmp_path / "log", changed(events_of(walk), "VERDICT", alarm))
+    report(log, tmp_path / "a.html")
+    with chromium() as browser:
+        printed = browser.new_page()
+        printed.goto((tmp_path / "a.html").as_uri())
+        pdf = printed.pdf(prefer_css_page_size=True)
+        printed.emulate_media(media="print")
+        seen = printed.inner_text("body")
+    assert len(re.findall(rb"/Type\s*/Page\b", pdf)) == 2
+    assert "What was seen" in seen and "Gait" in seen
+    assert "Configuration" not in seen and "Data quality" not in seen
+
+
 def test_alarms_have_start_duration_level_and_reason(walk, tmp_path, unseen):
     def alarm(tick, verdict):
         verdict.level, verdict.reason = 1, 0
@@ -255,6 +287,8 @@ def test_alarms_have_start_duration_level_and_reason(walk, tmp_path, unseen):
         ["4.00", "0.24", "unstable", "-0.030", reason_words(16), reason_words(3)],
     ]
     assert page.short["episodes by level"] == "unstable 1, caution 1, unknown 0"
+    assert "stable for 92% of the time; other episodes: 1 unstable, 1 caution." in page.text
+    assert f"The worst began at 4.0 s and lasted 0.2 s: {reason_words(16)}." in page.text
     assert ["unstable", "0.24", f"{3 / TICKS:.1%}"] in page.tables["level", "time (s)", "share"]
 
 
@@ -280,6 +314,7 @@ def test_a_fall_has_its_time_on_the_page_and_in_the_pictures(walk, tmp_path, uns
     margins = [message.margin for message in messages(events_of(walk), "BALANCE")]
     assert fallen.short["lowest margin"].startswith(f"{min(margins[:100]):.3f} at ")
     assert re.fullmatch(r"at 8\.\d\d s: scores, levels and .*", fallen.short["the wearer fell"])
+    assert "The wearer fell, 8.0 s after the beginning." in fallen.text
     (run,) = load_session(log).runs
     assert run.fell_s == pytest.approx(100 * TICK_S, abs=0.001)
     figure = Figure()

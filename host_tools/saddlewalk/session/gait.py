@@ -88,11 +88,15 @@ def configured(run: Run, speed_m_s: float) -> Configured | None:
     )
 
 
+def cadence(steps: Steps) -> float:
+    """Steps a minute; NaN if no step's time is known."""
+    return _ratio(60, _mean(steps.time_s))
+
+
 def rows(run: Run, walk: Walked) -> Iterator[Row]:
     steps = described(walk)
     of = configured(run, steps.speed_m_s)
     nothing = np.nan
-    cadence = _ratio(60, _mean(steps.time_s))
     leg_m = of.leg_m if of else nothing
     yield Row(
         "step length",
@@ -113,7 +117,7 @@ def rows(run: Run, walk: Walked) -> Iterator[Row]:
     yield Row(
         "cadence",
         "steps/min",
-        cadence,
+        cadence(steps),
         60 * _ratio(steps.speed_m_s, of.length_m) if of else nothing,
         f"{60 / STEP_TIME_S[0]:.0f} ± {60 / STEP_TIME_S[0] ** 2 * STEP_TIME_S[1]:.0f}",
         "How many steps a minute. Speed is cadence times step length.",

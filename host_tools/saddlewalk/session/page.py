@@ -10,11 +10,12 @@ import numpy as np
 from saddlewalk import __version__, html_page
 from saddlewalk.config import ANKLES
 from saddlewalk.contract import LEVELS, SIDES
-from saddlewalk.html_page import table
+from saddlewalk.html_page import on_screen, table
 from saddlewalk.printable import printable
 from saddlewalk.session import gait, quality
 from saddlewalk.session.pictures import draw
 from saddlewalk.session.runs import NO_NUMBER, Run, Session, Spans
+from saddlewalk.session.sentences import sentences
 from saddlewalk.session.steps import QUANTITIES, Steps, Walked, variability, walked
 
 TITLE = "Session report"
@@ -61,14 +62,15 @@ def write_page(log: Path, session: Session) -> str:
             kind: html_page.picture(names[kind], each.caption) for kind, each in pictures.items()
         }
         sections += [
-            f"## Summary\n\n{_summary(run, walk)}",
+            "## What was seen\n\n" + "\n\n".join(sentences(run, walk, alarms(run))),
+            on_screen(f"## Summary\n\n{_summary(run, walk)}"),
             f"## Levels and alarms\n\n{shown['level']}\n\n{_levels(run)}\n\n{_alarms(run)}",
-            f"## Scores\n\n{shown['scores']}",
+            on_screen(f"## Scores\n\n{shown['scores']}"),
             *(words for kind, words in shown.items() if kind.startswith("alarm")),
-            f"## Steps\n\n{_steps(walk)}\n\n{shown.get('steps', '')}",
             f"## Gait\n\n{_gait(run, walk)}",
-            f"## Data quality\n\n{_quality(run, found)}\n\n{shown.get('problems', '')}",
-            f"## Configuration\n\n{_configuration(run)}",
+            on_screen(f"## Steps\n\n{_steps(walk)}\n\n{shown.get('steps', '')}"),
+            on_screen(f"## Data quality\n\n{_quality(run, found)}\n\n{shown.get('problems', '')}"),
+            on_screen(f"## Configuration\n\n{_configuration(run)}"),
         ]
     return html_page.page(f"{TITLE}: {printable(_name(log))}", "\n\n".join(sections), embedded)
 
