@@ -208,7 +208,7 @@ def test_a_recovery_step_reaches_its_place_within_the_legs_speed():
             swing_velocity_m_s=2.8 + 0j, swing_rise_m_s=0.0, time_to_via_point_s=0.25,
             time_to_landing_s=0.25, landing_m=0.7 + 0.1j, leg_length_m=1.02, height_m=1.0,
             pitch_rad=(0.0, 0.0), recovery=recovery,
-            reference=lambda after_s: Reference(0j, 0.4 + 0.05j),
+            reference=lambda after_s: Reference(0j, 0.4 + 0.05j, (0.5, 0.5)),
         )  # fmt: skip
 
     wearer = Wearer(body, STEADY)

@@ -26,7 +26,8 @@ def planned(plan: Any, core: Core, recovery: RecoveryStep | None = None) -> Plan
 
     def reference(after_s: float) -> Reference:
         predicted = core.reference_after(kept, after_s)
-        return Reference(_point(predicted.cop_m), _point(predicted.xcom_m))
+        load = tuple(predicted.load)
+        return Reference(_point(predicted.cop_m), _point(predicted.xcom_m), load)
 
     return Plan(
         mode=plan.mode,

@@ -112,6 +112,7 @@ class Reference:
 
     cop_m: complex
     xcom_m: complex
+    load: tuple[float, float]  # share of the weight that each foot carries
 
 
 @dataclass(frozen=True)
@@ -193,7 +194,7 @@ class Foot:
         self.height_m, self.velocity_m_s, self.contact = 0.0, 0j, True
 
 
-def _limited(point: complex, limit: complex) -> complex:
+def limited(point: complex, limit: complex) -> complex:
     return complex(
         min(max(point.real, -limit.real), limit.real), min(max(point.imag, -limit.imag), limit.imag)
     )
@@ -343,9 +344,11 @@ class Wearer:
         """What to balance by, in the world: midway between the feet if there is no plan."""
         if self._plan is None:
             middle = (self.feet[LEFT].position_m + self.feet[RIGHT].position_m) / 2
-            return Reference(middle, middle)
+            return Reference(middle, middle, (0.5, 0.5))
         planned = self._plan.reference(age)
-        return Reference(self._origin_m + planned.cop_m, self._origin_m + planned.xcom_m)
+        return Reference(
+            self._origin_m + planned.cop_m, self._origin_m + planned.xcom_m, planned.load
+        )
 
     def _move_feet(self) -> None:
         plan = self._plan
@@ -399,10 +402,10 @@ class Wearer:
         if self.takes_recovery_step and step is not None and step.foot == side:
             reach_m = self.body.reach * self.body.height_m
             planned_m = plan.landing_m - plan.feet_m[1 - side]
-            shift_m = _limited(step.landing_m, reach_m) - planned_m
-            self._recovery_shift_m = 0j if shift_m == _limited(shift_m, NEARBY_M) else shift_m
+            shift_m = limited(step.landing_m, reach_m) - planned_m
+            self._recovery_shift_m = 0j if shift_m == limited(shift_m, NEARBY_M) else shift_m
             deviation_m = step.xcom_deviation_m
-            in_need = deviation_m != _limited(deviation_m, IN_NEED_M)
+            in_need = deviation_m != limited(deviation_m, IN_NEED_M)
             self._hurries = in_need and self._recovery_shift_m != 0
         return self._recovery_shift_m
 
@@ -463,7 +466,7 @@ class Wearer:
             along = ((cop - middle) * apart.conjugate()).real / (abs(apart) ** 2 or 1.0)
             middle += min(max(along, 0.0), share) * apart
         sole = complex(self.body.foot_half_length_m, self.body.foot_half_width_m)
-        self.cop_m = middle + _limited(cop - middle, sole)
+        self.cop_m = middle + limited(cop - middle, sole)
 
     def _move_com(self) -> None:
         """The pendulum's closed form over one step, and the pushes."""

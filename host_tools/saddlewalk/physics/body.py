@@ -38,10 +38,17 @@ JOINTS: Mapping[str, tuple[tuple[float, float, float], tuple[float, float], floa
 }
 JOINT_DAMPING, JOINT_ARMATURE = 0.5, 0.02  # N m s/rad, kg m2
 
-# Fields of saddle_config_t. Knees a little bent; a step's width that hips with torque limits bear.
-WINTER_FIELDS: Mapping[str, float | int] = {
+# Fields of saddle_config_t for any body. A late foot reaches down until it carries; to wait for it
+# until the tick after would be longer.
+WALK_FIELDS: Mapping[str, float | int] = {
     "ankle": ANKLES["cycloid"],
-    "pendulum_ratio": 0.545,
+    "swing_approach": 0.3,
+    "landing_late_s": 0.0,
+}
+# Knees bent enough for the steps of 1.6 m/s; a step's width that hips with torque limits bear.
+WINTER_FIELDS: Mapping[str, float | int] = {
+    **WALK_FIELDS,
+    "pendulum_ratio": 0.53,
     "step_width_fast_m": 0.16,
 }
 
@@ -62,6 +69,10 @@ class Leg:
     def sole_m(self) -> np.ndarray:
         """The middle of the sole, which stands for the foot in plans and measurements."""
         return np.asarray(self.corners_m.mean(axis=0))
+
+    @functools.cached_property
+    def half_length_m(self) -> float:
+        return float(np.ptp(self.corners_m[:, 0]) / 2)
 
 
 @dataclass(frozen=True)

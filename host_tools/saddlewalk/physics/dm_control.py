@@ -17,11 +17,10 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from saddlewalk.config import ANKLES
 from saddlewalk.contract import SIDES
 from saddlewalk.errors import UserError
 from saddlewalk.paths import build_dir
-from saddlewalk.physics.body import Body, Leg, compiled, contact
+from saddlewalk.physics.body import WALK_FIELDS, Body, Leg, compiled, contact
 
 PACKAGE = "playground==0.2.0"
 XML = "mujoco_playground/_src/dm_control_suite/xmls/humanoid.xml"
@@ -75,7 +74,7 @@ def fields() -> Mapping[str, float | int]:
     """Fields of saddle_config_t. Its soles are narrow, so it stands and steps with close feet."""
     model = dm_control().model
     return {
-        "ankle": ANKLES["cycloid"],
+        **WALK_FIELDS,
         "body_height_m": _height_m(model),
         "body_mass_kg": float(model.body_mass.sum()),
         "pendulum_ratio": PENDULUM_RATIO,

@@ -42,10 +42,9 @@ class Gains:
     detour_filter_rad_s: float = 20.0  # of a landing that moves
     lift_off_share: float = 0.6  # of a swing, in which the place of the lift-off fades
     pitch_time_s: float = 0.04  # of a foot's pitch in the air
-    feed_forward: float = 0.2  # filter of the swing's acceleration, of a step of physics
+    sole_rise_max_m: float = 0.006  # by which a pitched foot swings higher, to land on time
+    feed_forward: float = 0.6  # filter of the swing's acceleration, of a step of the control
     swing_acceleration_max_m_s2: float = 60.0
-    approach_slope: float = 0.3  # height of the swing per distance left, up to approach_m
-    approach_m: float = 0.1
     reach_down_m_s: float = 0.3  # of a foot that should have landed and has not
     reach_down_m: float = 0.01
 

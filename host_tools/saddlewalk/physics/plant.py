@@ -47,6 +47,10 @@ class Plant:
         rotation = self.data.xmat[self._feet[side]].reshape(3, 3)
         return math.atan2(-rotation[2, 0], rotation[0, 0])
 
+    def sole_rise_m(self, side: int) -> float:
+        """Of the middle of the sole over its lower end."""
+        return self.body.legs[side].half_length_m * abs(math.sin(self.sole_pitch_rad(side)))
+
     def _at_foot(self, side: int, local_m: np.ndarray) -> np.ndarray:
         foot = self._feet[side]
         return np.asarray(self.data.xpos[foot] + self.data.xmat[foot].reshape(3, 3) @ local_m)
@@ -69,7 +73,7 @@ class Plant:
             limited = np.clip(change, -POSE_STEP_MAX, POSE_STEP_MAX)
             mujoco.mj_integratePos(model, data.qpos, limited, 1.0)
         mujoco.mj_forward(model, data)
-        self._sense()
+        mujoco.mj_subtreeVel(model, data)
 
     def _pose_error(
         self, soles_m: tuple[complex, complex], com_m: np.ndarray
@@ -89,8 +93,11 @@ class Plant:
             [*errors, _to_level(data.xquat[self._pelvis])]
         )
 
-    def step(self, torques: np.ndarray, push_n: complex) -> None:
-        """1 ms with these torques, delayed, and a force through the CoM of the whole body."""
+    def step(self, torques: np.ndarray, push_n: complex, sensed: bool = True) -> None:
+        """1 ms with these torques, delayed, and a force through the CoM of the whole body.
+
+        sensed: loads and the CoM's velocity are wanted after it, and else stay as they were.
+        """
         data = self.data
         self._torques.append(torques)
         data.ctrl[:] = self._torques[0]
@@ -101,12 +108,11 @@ class Plant:
             lever_m[0] * push_n.imag - lever_m[1] * push_n.real,
         )
         mujoco.mj_step2(self.model, data)
-        self._weigh()
+        if sensed:
+            self._weigh()
         mujoco.mj_step1(self.model, data)
-        self._sense()
-
-    def _sense(self) -> None:
-        mujoco.mj_subtreeVel(self.model, self.data)
+        if sensed:
+            mujoco.mj_subtreeVel(self.model, data)
 
     def _weigh(self) -> None:
         """Load of each foot, from the contacts of the step that was just made."""

@@ -14,13 +14,12 @@ class PlannedSwing:
 
     position_m: np.ndarray  # (3,)
     velocity_m_s: np.ndarray
-    landing_m: complex
     landing_in_s: float
 
 
 @dataclass
 class Swing:
-    """One swing, from lift-off on. `step()` once per step of physics gives the next targets."""
+    """One swing, from lift-off on. `step()` once per step of the control gives the next targets."""
 
     gains: Gains
     step_s: float
@@ -41,7 +40,7 @@ class Swing:
 
     def step(self, planned: PlannedSwing, shift_m: complex) -> None:
         """shift_m: of the landing, from the planned one; frozen shortly before it."""
-        path_m, rate_m_s = self._raised(planned)
+        path_m, rate_m_s = planned.position_m, planned.velocity_m_s
         before_m_s = None if self._mismatch_m is None else self.velocity_m_s
         if self._mismatch_m is None:
             self._mismatch_m = self.lift_off_m - path_m
@@ -60,19 +59,6 @@ class Swing:
             gained = np.clip((self.velocity_m_s - before_m_s) / self.step_s, -most, most)
             self.acceleration_m_s2 += self.gains.feed_forward * (gained - self.acceleration_m_s2)
         self._age_s += self.step_s
-
-    def _raised(self, planned: PlannedSwing) -> tuple[np.ndarray, np.ndarray]:
-        """The planned swing, high enough not to touch before its time."""
-        path_m, rate_m_s = planned.position_m.copy(), planned.velocity_m_s.copy()
-        left_m = abs(planned.landing_m - complex(path_m[0], path_m[1]))
-        gains = self.gains
-        height_m = gains.approach_slope * min(left_m, gains.approach_m)
-        if height_m > path_m[2]:
-            approaching = left_m < gains.approach_m
-            speed_m_s = abs(complex(rate_m_s[0], rate_m_s[1]))
-            path_m[2] = height_m
-            rate_m_s[2] = -gains.approach_slope * speed_m_s if approaching else 0.0
-        return path_m, rate_m_s
 
     def _turn(self) -> None:
         """The detour follows the shift, critically damped."""

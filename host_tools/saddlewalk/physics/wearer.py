@@ -1,8 +1,7 @@
-"""A wearer whose body, feet and contacts are MuJoCo's: the plan, the XCoM law and a programme of
-inverse dynamics make it walk.
+"""A wearer whose body, feet and contacts are MuJoCo's; plan, XCoM law and inverse dynamics move it.
 
-Where to step and where the CoP is to be is decided as by the emulated wearer; but a foot has landed
-when it carries, not when it was to, and the CoM moves as the joint torques make it.
+Where to step, when, and what each foot carries is the plan's; but a foot has landed when it
+carries, and the CoM moves as the joint torques make it.
 """
 
 from collections import deque
@@ -20,14 +19,15 @@ from saddlewalk.physics.plant import Plant
 from saddlewalk.physics.poses import Pose
 from saddlewalk.physics.swing import PlannedSwing, Swing
 
-CONTROL_STEPS = 2  # of physics, per quadratic programme
+CONTROL_STEPS = 4  # of physics, per quadratic programme and sensing; they divide a tick
+CONTROL_S = CONTROL_STEPS * STEP_S
 POSE_STEPS = 40  # from a recorded pose to the next
 CONTACT_N = 30.0  # load from which a sole's switch closes
 SIDES = (LEFT, RIGHT)
 
 
 class PhysicalWearer(emulation.Wearer):
-    """With the emulated wearer's interface. Between two ticks it needs the plan at every step."""
+    """With the emulated wearer's interface. Between two ticks it needs the plan at any time."""
 
     def __init__(
         self,
@@ -49,24 +49,27 @@ class PhysicalWearer(emulation.Wearer):
         super().__init__(pendulum, noise, pushes, seed, takes_recovery_step, right_ahead_m)
         self.plant, self.gains = plant, Gains()
         self._dynamics = InverseDynamics(plant.body, self.gains)
+        self._weight_n = plant.body.mass_kg * GRAVITY_M_S2
         self._torques = np.zeros(plant.model.nu)
         left_m = 1j * config.step_width_slow_m / 2 - right_ahead_m / 2
         plant.stand((left_m, -left_m), np.array([0.0, 0.0, pendulum.pendulum_m]))
         self.poses: list[Pose] | None = None  # a list is filled
         self._plan_at: PlanAt | None = None
-        self._since_tick_s = 0.0
         self._tick_plan: Plan | None = None
+        self._since_tick_s = 0.0
+        self._until_control = 0  # steps of physics
+        self._programmes = 0
         self._swings: list[Swing | None] = [None, None]  # also of a foot that still reaches down
-        self._light_steps = [0, 0]
-        self._height_m = self._height_m_s = 0.0  # the filtered reference
+        self._landed_early: int | None = None  # the swing foot that stands before the plan says so
+        self._light_s = [0.0, 0.0]
         self._sense()
-        self._height_m = self.height_m
-        self._seen = deque([self._exact_now()], maxlen=1 + round(sensor_delay_s / STEP_S))
+        self._height_m, self._height_m_s = self.height_m, 0.0  # the filtered reference
+        self._seen = deque([self._exact_now()], maxlen=1 + round(sensor_delay_s / CONTROL_S))
 
     @property
     def unsolved_share(self) -> float:
         """Of the quadratic programmes so far, without an optimum."""
-        return self._dynamics.unsolved / max(self._steps / CONTROL_STEPS, 1)
+        return self._dynamics.unsolved / max(self._programmes, 1)
 
     def exact(self) -> Measurement:
         """What sensors without noise give, with their delay."""
@@ -79,8 +82,11 @@ class PhysicalWearer(emulation.Wearer):
         return Measurement(self.height_m, self.velocity_m_s, (left, right), contact)
 
     def follow(self, plan: Plan | None, plan_at: PlanAt | None = None) -> None:
-        self._tick_plan, self._plan_at, self._since_tick_s = plan, plan_at, 0.0
-        super().follow(plan)
+        self._plan = self._tick_plan = plan
+        self._plan_at = plan_at
+        self._plan_age_s = self._since_tick_s = 0.0
+        self._until_control = 0
+        self._started = self._started or plan is not None
 
     def step(self) -> None:
         if self._started:
@@ -88,33 +94,19 @@ class PhysicalWearer(emulation.Wearer):
             self.time_s = self._steps * STEP_S
         if self.fallen:
             return
-        self._renew_plan()
+        if self._until_control == 0:
+            self._control()
+            self._until_control = CONTROL_STEPS
+        self._until_control -= 1
+        sensed = self._until_control == 0
+        self.plant.step(self._torques, self._push(), sensed)
         self._plan_age_s += STEP_S
         self._since_tick_s += STEP_S
-        self._since_landing_s += STEP_S
-        cop = self._reference(self._plan_age_s + self.body.cop_lag_s).cop_m
-        self.xcom_error_m = self.xcom_m - self._reference(self._plan_age_s).xcom_m
-        self._step_feet()
-        self._move_cop(cop + (1 + self.body.cop_gain) * self.xcom_error_m)
-        if (self._steps - 1) % CONTROL_STEPS == 0:
-            torques = self._dynamics.torques(self.plant.data, self._targets())
-            self._torques = self._torques if torques is None else torques
-        self.plant.step(self._torques, self._push())
-        self._sense()
-        self._seen.append(self._exact_now())
+        if sensed:
+            self._sense()
+            self._seen.append(self._exact_now())
         if self.poses is not None and self._steps % POSE_STEPS == 0:
             self.poses.append(Pose(self.time_s, self.plant.data.qpos.copy()))
-
-    def _renew_plan(self) -> None:
-        """The plan of this step of physics; where to recover to is only known at a tick."""
-        if self._since_tick_s > self.PLAN_MAX_AGE_S:
-            self._plan = None
-        elif self._plan_at is not None and self._since_tick_s > 0:
-            plan, tick = self._plan_at(self._since_tick_s), self._tick_plan
-            if plan is not None and tick is not None and plan.support == tick.support:
-                plan = replace(plan, recovery=tick.recovery)
-            if plan is not None:
-                super().follow(plan)
 
     def _push(self) -> complex:
         """The force of this step, through the CoM."""
@@ -137,75 +129,136 @@ class PhysicalWearer(emulation.Wearer):
             self.fallen, self.fell_at_s = True, self.time_s
             self.velocity_m_s, self.rise_m_s = 0j, 0.0
 
+    # -- control ----------------------------------------------------------------------------------
+
+    def _control(self) -> None:
+        self._renew_plan()
+        self._step_feet()
+        self._place_frame()
+        self._swing_on()
+        self._balance()
+        torques = self._dynamics.torques(self.plant.data, self._targets())
+        self._torques = self._torques if torques is None else torques
+        self._programmes += 1
+
+    def _renew_plan(self) -> None:
+        """The plan of now; where to recover to is only known at a tick."""
+        if self._since_tick_s > self.PLAN_MAX_AGE_S:
+            self._plan = None
+        elif self._plan_at is not None and self._since_tick_s > 0:
+            plan, tick = self._plan_at(self._since_tick_s), self._tick_plan
+            if plan is not None and tick is not None and plan.support == tick.support:
+                plan = replace(plan, recovery=tick.recovery)
+            if plan is not None:
+                self._plan, self._plan_age_s = plan, 0.0
+
+    def _place_frame(self) -> None:
+        """The plan's frame against the foot that it steps on or, once that has landed, steps to."""
+        plan = self._plan
+        if plan is None:
+            return
+        if self._landed_early is None:
+            foot, place = plan.support, plan.feet_m[plan.support]
+        else:
+            foot, place = self._landed_early, plan.landing_m
+        self._origin_m = self.feet[foot].position_m - place
+
+    def _balance(self) -> None:
+        """The CoP that is wanted: the reference's and more by the XCoM's error, within the feet."""
+        cop_m = self._reference(self._plan_age_s + self.body.cop_lag_s).cop_m
+        reference = self._reference(self._plan_age_s)
+        self.xcom_error_m = self.xcom_m - reference.xcom_m
+        wanted = cop_m + (1 + self.body.cop_gain) * self.xcom_error_m
+        cop_m = self.cop_m + (wanted - self.cop_m) * (CONTROL_S / self.body.cop_lag_s)
+        stance = LEFT if self._plan is None else self._plan.support
+        other, middle_m = 1 - stance, self.feet[stance].position_m
+        share = self._share(other)
+        if share > 0:
+            apart_m = self.feet[other].position_m - middle_m
+            along = ((cop_m - middle_m) * apart_m.conjugate()).real / abs(apart_m) ** 2
+            middle_m += min(max(along, 0.0), share) * apart_m
+        sole_m = complex(self.body.foot_half_length_m, self.body.foot_half_width_m)
+        self.cop_m = middle_m + emulation.limited(cop_m - middle_m, sole_m)
+
+    def _share(self, side: int) -> float:
+        """The most of the weight that a foot may carry which the plan does not step on."""
+        plan = self._plan
+        if not self.feet[side].contact:
+            return 0.0
+        if plan is None or plan.both_feet_stand or self._landed_early is not None:
+            return 1.0
+        return plan.reference(self._plan_age_s).load[side]
+
     # -- feet: planned, then as the ground has it -------------------------------------------------
 
     def _step_feet(self) -> None:
-        stood = [foot.contact for foot in self.feet]
-        self._move_feet()
+        plan = self._plan
         for side in SIDES:
-            self._count_light_steps(side)
-            if self._may_lift(side):
-                self.feet[side].contact = False
-        for side in SIDES:
-            self._touch_down(side, stood[side])
-        for side in SIDES:
-            if stood[side] and not self.feet[side].contact:
+            light = self.plant.loads_n[side] < self.gains.lifted_n
+            self._light_s[side] = self._light_s[side] + CONTROL_S if light else 0.0
+            if self.plant.loads_n[side] > self.gains.landed_n and self.feet[side].contact:
+                self._swings[side] = None
+        if plan is None or plan.both_feet_stand:
+            for side in SIDES:
+                self.feet[side].contact = True
+            self._landed_early = None
+            return
+        self.feet[plan.support].contact = True
+        if self._landed_early == plan.support:
+            self._landed_early = None
+        side = 1 - plan.support
+        if self.feet[side].contact:
+            if self._may_lift(plan, side):
                 self._lift_off(side)
+        else:
+            self._touch_down(plan, side)
 
-    def _count_light_steps(self, side: int) -> None:
-        light = self.plant.loads_n[side] < self.gains.lifted_n
-        self._light_steps[side] = self._light_steps[side] + 1 if light else 0
-
-    def _may_lift(self, side: int) -> bool:
-        """The trailing foot carries nothing any more, before its time."""
-        plan, other = self._plan, 1 - side
-        if plan is None or plan.both_feet_stand or plan.lands_beside or self._is_first_swing:
+    def _may_lift(self, plan: Plan, side: int) -> bool:
+        """It has handed over its load, or carries nothing any more before its time; not while the
+        foot that is to carry has not found the ground."""
+        due = self._plan_age_s >= plan.landing_in_s
+        if due or self._landed_early == side or self._swings[plan.support]:
             return False
-        return (
-            self.feet[side].contact
-            and plan.support == self._leading == other
-            and self._since_landing_s > 0
-            and self._light_steps[side] * STEP_S > self.gains.lifted_s
-            and self.plant.loads_n[other] > self.gains.carrying_n
-        )
-
-    def _touch_down(self, side: int, stood: bool) -> None:
-        foot, load_n, plan = self.feet[side], self.plant.loads_n[side], self._plan
-        if foot.contact:
-            if self._swings[side] and load_n > self.gains.landed_n:
-                self._swings[side] = None
-        elif load_n > self.gains.landed_early_n and plan is not None and not self._is_first_swing:
-            early_s = plan.landing_in_s - self._plan_age_s
-            if 0 < early_s < self.gains.early_max_s:
-                self._land(side, early_s)
-                self._hold(plan)
-                self._swings[side] = None
+        if self._share(side) <= 0.0:
+            return True
+        carried = self.plant.loads_n[plan.support] > self.gains.carrying_n
+        return self._light_s[side] > self.gains.lifted_s and carried and not plan.lands_beside
 
     def _lift_off(self, side: int) -> None:
-        """Unless the other foot, which should carry, has not found the ground yet."""
-        if self._swings[1 - side]:
-            self.feet[side].contact = True
-        elif self._plan is not None:
-            sole_m, pitch_rad = self.plant.sole_m(side), self.plant.sole_pitch_rad(side)
-            self._swings[side] = Swing(self.gains, STEP_S, sole_m, pitch_rad)
-            self._swing(self._plan, side, self.feet[side])
+        self.feet[side].contact = False
+        self._recovery_shift_m, self._hurries = 0j, False
+        sole_m, pitch_rad = self.plant.sole_m(side), self.plant.sole_pitch_rad(side)
+        self._swings[side] = Swing(self.gains, CONTROL_S, sole_m, pitch_rad)
 
-    def _swing(self, plan: Plan, side: int, foot: emulation.Foot) -> bool:
-        """Moves the target of a foot in the air; when it has landed, the ground tells."""
-        swing, age_s = self._swings[side], self._plan_age_s
-        if swing is None:
-            return False
+    def _touch_down(self, plan: Plan, side: int) -> None:
+        left_s = plan.landing_in_s - self._plan_age_s
+        if left_s <= 0:
+            self.feet[side].contact = True
+        elif (
+            left_s < self.gains.early_max_s and self.plant.loads_n[side] > self.gains.landed_early_n
+        ):
+            self.feet[side].contact = True
+            self._swings[side], self._landed_early = None, side
+
+    def _swing_on(self) -> None:
+        """Moves the target of a foot in the air."""
+        plan, age_s = self._plan, self._plan_age_s
+        if plan is None:
+            return
+        side = 1 - plan.support
+        swing = self._swings[side]
+        if swing is None or self.feet[side].contact:
+            return
         rate = plan.swing_velocity_m_s
         place = self._origin_m + plan.feet_m[side] + rate * age_s
         height_m = plan.foot_heights_m[side] + plan.swing_rise_m_s * age_s
+        height_m += min(self.plant.sole_rise_m(side), self.gains.sole_rise_max_m)
         planned = PlannedSwing(
             position_m=np.array([place.real, place.imag, height_m]),
             velocity_m_s=np.array([rate.real, rate.imag, plan.swing_rise_m_s]),
-            landing_m=self._origin_m + plan.landing_m,
             landing_in_s=plan.landing_in_s - age_s,
         )
         swing.step(planned, self._landing_shift(plan, side))
-        return False
 
     def _landing_shift(self, plan: Plan, side: int) -> complex:
         """The recovery step where the walk is in need of one, else in proportion to the error."""
@@ -217,24 +270,24 @@ class PhysicalWearer(emulation.Wearer):
     # -- targets of the programme -----------------------------------------------------------------
 
     def _targets(self) -> Targets:
-        gains, step_s = self.gains, CONTROL_STEPS * STEP_S
+        gains = self.gains
         level = (self.com_m - self.cop_m) * self.body.natural_frequency_rad_s**2
         planned_m = self._plan.height_m if self._plan else self.body.pendulum_m
         rate = gains.height_filter_rad_s
         pull = rate * rate * (planned_m - self._height_m) - 2 * rate * self._height_m_s
-        self._height_m_s += pull * step_s
-        self._height_m += self._height_m_s * step_s
+        self._height_m_s += pull * CONTROL_S
+        self._height_m += self._height_m_s * CONTROL_S
         rise = gains.height_stiffness * (self._height_m - self.height_m)
         rise += gains.height_damping * (self._height_m_s - self.rise_m_s)
-        feet = (self._foot_target(LEFT, step_s), self._foot_target(RIGHT, step_s))
+        feet = (self._foot_target(LEFT), self._foot_target(RIGHT))
         return Targets(np.array([level.real, level.imag, rise]), feet)
 
-    def _foot_target(self, side: int, step_s: float) -> FootTarget:
-        foot, swing = self.feet[side], self._swings[side]
+    def _foot_target(self, side: int) -> FootTarget:
+        foot, swing, plan = self.feet[side], self._swings[side], self._plan
         if swing is not None and foot.contact:
             return self._reach_down(side, swing)
-        if swing is not None and self._plan is not None:
-            swing.turn_sole(self._plan.pitch_rad[side], step_s)
+        if swing is not None and plan is not None:
+            swing.turn_sole(plan.pitch_rad[side], CONTROL_S)
             return FootTarget(
                 Contact.AIR,
                 pitch_rad=swing.pitch_rad,
@@ -242,12 +295,18 @@ class PhysicalWearer(emulation.Wearer):
                 velocity_m_s=swing.velocity_m_s,
                 acceleration_m_s2=swing.acceleration_m_s2,
             )
-        if self._carries_by_the_toe(side) and self._plan is not None:
-            share = max(self._trailing_share(), self.gains.trailing_share_min)
-            weight_n = self.plant.body.mass_kg * GRAVITY_M_S2
-            load_max_n = share * self.gains.trailing_reserve * weight_n
-            return FootTarget(Contact.TOE, self._plan.pitch_rad[side], load_max_n)
+        if plan is not None and self._trails(plan, side):
+            share = max(self._share(side), self.gains.trailing_share_min)
+            load_max_n = share * self.gains.trailing_reserve * self._weight_n
+            return FootTarget(Contact.TOE, plan.pitch_rad[side], load_max_n)
         return FootTarget(Contact.SOLE)
+
+    def _trails(self, plan: Plan, side: int) -> bool:
+        """Hands its load over to a foot that has landed."""
+        if plan.both_feet_stand or self._swings[1 - side]:
+            return False
+        leading = plan.support if self._landed_early is None else self._landed_early
+        return side != leading
 
     def _reach_down(self, side: int, swing: Swing) -> FootTarget:
         position_m = swing.position_m.copy()
@@ -259,9 +318,3 @@ class PhysicalWearer(emulation.Wearer):
             velocity_m_s=down_m_s,
             acceleration_m_s2=np.zeros(3),
         )
-
-    def _carries_by_the_toe(self, side: int) -> bool:
-        plan, leading = self._plan, self._leading
-        if plan is None or plan.both_feet_stand or self._is_first_swing or side == leading:
-            return False
-        return self._swings[leading] is None and not self._must_wait(plan)
