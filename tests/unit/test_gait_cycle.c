@@ -307,6 +307,113 @@ static void test_next_step_starts_from_the_foot_that_is_there(void)
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.0664, cycle.stance_y_m);
 }
 
+/* ---- [E45] a moved landing ---- */
+
+/* Ahead of the foot via point by a share of the quarter. */
+static void walk_before_landing(float speed, double share)
+{
+    bool arrived;
+    begin(0, speed, true);
+    while (cycle.x_m < (float)share * cycle.quarter.length_m) {
+        advance(1000, &arrived);
+    }
+}
+
+static saddle_vec2_t planned_step(void)
+{
+    return (saddle_vec2_t){2.0f * cycle.quarter.length_m, cycle.swing.line_y_m};
+}
+
+static void place(float dx, float dy)
+{
+    const saddle_vec2_t step = planned_step();
+    saddle_cycle_place(&cycle, model_of(&config), (saddle_vec2_t){step.x + dx, step.y + dy});
+}
+
+static void test_moved_landing_neither_moves_the_foot_at_once_nor_its_velocity(void)
+{
+    walk_before_landing(1.2f, 0.2);
+    for (int k = 0; k < 2; k++) { /* the second while the foot is on its way to the first */
+        const saddle_pose_t before = pose();
+        place(k == 0 ? 0.1f : -0.05f, k == 0 ? -0.06f : 0.02f);
+        const saddle_pose_t after = pose();
+        /* Rounded where the way is added: 2^-24 of a metre, of metres per second. */
+        TEST_ASSERT_DOUBLE_WITHIN(2e-7, before.swing.position_m.x, after.swing.position_m.x);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-7, before.swing.position_m.y, after.swing.position_m.y);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, before.swing.velocity_m_s.x, after.swing.velocity_m_s.x);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, before.swing.velocity_m_s.y, after.swing.velocity_m_s.y);
+        bool arrived;
+        advance(40000, &arrived);
+    }
+}
+
+static void test_moved_landing_becomes_the_stance_foot_where_it_is(void)
+{
+    bool arrived;
+    walk_before_landing(1.2f, 0.2);
+    const saddle_vec2_t step = planned_step();
+    const int64_t origin_nm = cycle.origin_x_nm;
+    const float stance_y = cycle.stance_y_m;
+    place(0.1f, -0.06f);
+    saddle_pose_t last = pose();
+    while (cycle.phase == 0u) {
+        last = pose();
+        advance(100, &arrived);
+    }
+    const saddle_pose_t landed = pose();
+    TEST_ASSERT_DOUBLE_WITHIN(2e-7, (double)step.x + 0.1, cycle.last_step_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-7, (double)step.y - 0.06, cycle.last_step_m.y);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-7, cycle.last_step_m.x,
+                              1e-9 * (double)(cycle.origin_x_nm - origin_nm));
+    TEST_ASSERT_DOUBLE_WITHIN(2e-7, cycle.last_step_m.y, cycle.stance_y_m - stance_y);
+    /* In 0.1 ms no more than at 2 m/s along x, by E9's line, and at 0.2 m/s across. */
+    TEST_ASSERT_DOUBLE_WITHIN(2e-4, cycle.last_step_m.x, last.swing.position_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-5, cycle.last_step_m.y, last.swing.position_m.y);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-4, last.com_m.x, landed.com_m.x + cycle.last_step_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-5, last.com_m.y, landed.com_m.y + cycle.last_step_m.y);
+    ASSERT_SAME_FLOAT(0.0f, cycle.swing.moved_m.x); /* the next swing lands as planned */
+}
+
+static void test_landing_is_frozen_before_the_foot_via_point_and_for_the_last_60_ms(void)
+{
+    bool arrived;
+    walk_before_landing(1.2f, 0.2);
+    while (saddle_cycle_distance_to_via_point_m(&cycle) > 0.0599f * 1.2f) {
+        advance(1000, &arrived);
+    }
+    saddle_cycle_t before = cycle;
+    place(0.02f, 0.0f);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &cycle, sizeof before);
+    while (cycle.phase == 0u) {
+        advance(1000, &arrived);
+    }
+    before = cycle;
+    place(0.02f, 0.0f);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &cycle, sizeof before);
+}
+
+static void test_landing_moves_no_further_than_the_foot_comes_and_the_leg_reaches(void)
+{
+    const double frozen_s = 0.06, foot_m_s = 1.6;
+    bool arrived;
+    walk_before_landing(1.2f, 0.2);
+    place(2.0f, 2.0f); /* the left leg stands: to the left is inward */
+    const double half = (double)cycle.quarter.length_m, width = -(double)cycle.swing.line_y_m;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, (double)body.half_step_max_m - half, cycle.swing.moved_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, width - 0.02, cycle.swing.moved_m.y);
+    walk_before_landing(1.2f, 0.2);
+    while (saddle_cycle_distance_to_via_point_m(&cycle) > 0.07f * 1.2f) {
+        advance(1000, &arrived);
+    }
+    place(-2.0f, 0.0f);
+    TEST_ASSERT_TRUE(cycle.swing.moved_m.x < (float)(-frozen_s * foot_m_s) &&
+                     cycle.swing.moved_m.x > (float)(-0.071 * foot_m_s));
+    walk_before_landing(0.4f, 0.2);
+    cycle.last_swing = true; /* the next one: it needs the way to brake */
+    place(-0.1f, 0.0f);
+    ASSERT_SAME_FLOAT(0.0f, cycle.swing.moved_m.x);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -323,5 +430,9 @@ int main(void)
     RUN_TEST(test_next_line_is_between_half_and_twice_a_step_width);
     RUN_TEST(test_heel_strike_angle_waits_for_the_heel_strike_after_the_next);
     RUN_TEST(test_next_step_starts_from_the_foot_that_is_there);
+    RUN_TEST(test_moved_landing_neither_moves_the_foot_at_once_nor_its_velocity);
+    RUN_TEST(test_moved_landing_becomes_the_stance_foot_where_it_is);
+    RUN_TEST(test_landing_is_frozen_before_the_foot_via_point_and_for_the_last_60_ms);
+    RUN_TEST(test_landing_moves_no_further_than_the_foot_comes_and_the_leg_reaches);
     return UNITY_END();
 }

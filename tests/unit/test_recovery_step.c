@@ -384,6 +384,27 @@ static void test_landing_follows_the_departure_by_its_share(void)
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, reach(), recovery_from(&target).landing_m.x);
 }
 
+/* [E45] */
+static void test_placement_moves_the_landing_within_the_same_bounds(void)
+{
+    saddle_recovery_target_t target = {.stance = SADDLE_LEFT,
+                                       .landing_m = {0.5f, -0.2f},
+                                       .xcom_m = {0.6f, -0.15f},
+                                       .departure_m = {0.08f, -0.03f},
+                                       .step_time_s = STEP_TIME_S};
+    const saddle_recovery_t followed = recovery_from(&target);
+    target.placement_m = (saddle_vec2_t){0.04f, -0.02f};
+    const saddle_recovery_t placed = recovery_from(&target);
+    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, (double)followed.landing_m.x + 0.04,
+                              placed.landing_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, (double)followed.landing_m.y - 0.02,
+                              placed.landing_m.y);
+    ASSERT_SAME_FLOAT(followed.margin_m, placed.margin_m);
+    target.placement_m.x = 1.0f; /* the heel no further ahead of the XCoM */
+    TEST_ASSERT_DOUBLE_WITHIN(PLACE_TOLERANCE, 0.6 + 0.08 + heel(&target),
+                              recovery_from(&target).landing_m.x);
+}
+
 static void test_share_that_is_followed_changes_neither_margin_nor_decision(void)
 {
     uint32_t state = 79;
@@ -517,6 +538,7 @@ int main(void)
     RUN_TEST(test_step_without_time_has_the_whole_reach_behind_the_xcom);
     RUN_TEST(test_margin_is_continuous);
     RUN_TEST(test_landing_follows_the_departure_by_its_share);
+    RUN_TEST(test_placement_moves_the_landing_within_the_same_bounds);
     RUN_TEST(test_share_that_is_followed_changes_neither_margin_nor_decision);
     RUN_TEST(test_margin_of_the_configuration_keeps_the_xcom_inside_the_foot);
     RUN_TEST(test_step_stops_where_the_xcom_lies_in_the_base_of_its_posture);

@@ -952,6 +952,68 @@ static void test_wearer_who_follows_the_plan_never_departs_from_it(void)
     TEST_ASSERT_TRUE(output.plan.step_count > 5u);
 }
 
+/* ---- [E45] the landing moves with the wearer ---- */
+
+/* A tick beyond the foot via point, of a wearer who keeps to the reference but goes faster by dv. */
+static void tick_off_by(saddle_vec2_t dv_m_s, float gain)
+{
+    uint64_t t = walk_for_a_while();
+    while (output.plan.phase != 0u) {
+        follow_until(&t, t + 1u);
+    }
+    context.model.config.placement_gain = gain;
+    const float w = context.model.body.natural_frequency_rad_s;
+    saddle_plan_t plan = plan_at(t + 1000u);
+    plan.com_velocity_m_s.x = w * (plan.reference.xcom_m.x - plan.com_m.x) + dv_m_s.x;
+    plan.com_velocity_m_s.y = w * (plan.reference.xcom_m.y - plan.com_m.y) + dv_m_s.y;
+    measure_plan(&plan, &input.measurement);
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(t + 1000u));
+    TEST_ASSERT_EQUAL_UINT8(0, output.plan.phase);
+}
+
+static void test_landing_follows_what_the_ankles_can_mend_by_the_gain(void)
+{
+    const double w = (double)model_of(&config)->body.natural_frequency_rad_s;
+    tick_off_by((saddle_vec2_t){0.0f, 0.0f}, 0.5f);
+    const saddle_plan_t on_reference = output.plan;
+    TEST_ASSERT_DOUBLE_WITHIN(2e-6, on_reference.step_length_m, on_reference.landing_m.x);
+    tick_off_by((saddle_vec2_t){0.03f, -0.02f}, 0.5f);
+    const double grown = exp(w * (double)output.plan.time_to_toe_off_s) / w;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 0.5 * 0.03 * grown,
+                              output.plan.landing_m.x - on_reference.landing_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, -0.5 * 0.02 * grown,
+                              output.plan.landing_m.y - on_reference.landing_m.y);
+}
+
+/* The same posture without a moved landing: neither the verdict nor the reference differs. */
+static void test_wearer_is_judged_by_the_plan_that_was_not_moved(void)
+{
+    const saddle_vec2_t dv_m_s = {0.25f, -0.1f};
+    tick_off_by(dv_m_s, 0.0f);
+    const saddle_output_t unmoved = output;
+    tick_off_by(dv_m_s, 0.5f);
+    TEST_ASSERT_TRUE(output.plan.landing_m.x > unmoved.plan.landing_m.x + 0.05f);
+    TEST_ASSERT_EQUAL_MEMORY(&unmoved.plan.reference, &output.plan.reference,
+                             sizeof unmoved.plan.reference);
+    ASSERT_SAME_FLOAT(unmoved.verdict.margin, output.verdict.margin);
+    ASSERT_SAME_FLOAT(unmoved.verdict.xcom_deviation_m.x, output.verdict.xcom_deviation_m.x);
+    ASSERT_SAME_FLOAT(unmoved.verdict.recovery.landing_m.x, output.verdict.recovery.landing_m.x);
+    ASSERT_SAME_FLOAT(unmoved.verdict.ebos_com_m, output.verdict.ebos_com_m);
+}
+
+static void test_plan_at_takes_the_recovery_step(void)
+{
+    tick_off_by((saddle_vec2_t){0.5f, -0.2f}, 0.5f);
+    const saddle_plan_t placed = output.plan;
+    const saddle_plan_t landed =
+        plan_at(81000u + context.last_time_us + (uint64_t)(1e6f * placed.time_to_toe_off_s));
+    const double stance_y = (double)placed.foot_m[placed.support].y;
+    TEST_ASSERT_TRUE(placed.landing_m.x > placed.step_length_m + 0.1f);
+    TEST_ASSERT_EQUAL_UINT32(placed.step_count + 1u, landed.step_count);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, placed.landing_m.x, landed.last_step_m.x);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, (double)placed.landing_m.y - stance_y, landed.last_step_m.y);
+}
+
 /* Nothing was commanded and nobody stands: whoever walks there is no follower of the plan. */
 static void test_standing_plan_is_no_reference(void)
 {
@@ -1097,6 +1159,9 @@ int main(void)
     RUN_TEST(test_walk_resumes_only_after_valid_inputs_for_resume_time);
     RUN_TEST(test_gap_between_the_ticks_ends_the_level_and_the_walk);
     RUN_TEST(test_step_scores_end_with_the_com);
+    RUN_TEST(test_landing_follows_what_the_ankles_can_mend_by_the_gain);
+    RUN_TEST(test_wearer_is_judged_by_the_plan_that_was_not_moved);
+    RUN_TEST(test_plan_at_takes_the_recovery_step);
     RUN_TEST(test_plan_that_was_never_given_measurements_walks_on);
     return UNITY_END();
 }

@@ -5,6 +5,7 @@
 #include "math/rounding.h"
 #include "math/vec2.h"
 #include "model/model.h"
+#include "motion/gait_cycle.h"
 #include "motion/plan_output.h"
 #include "motion/planner.h"
 #include "motion/reference.h"
@@ -100,8 +101,8 @@ static uint32_t take_command(saddle_context_t *context, const saddle_input_t *in
 }
 
 /* Where the wearer is to be. */
-static void read_intent(const saddle_planner_t *planner, const saddle_plan_t *plan,
-                        saddle_intent_t *intent)
+static void read_intent(const saddle_planner_t *planner, const saddle_model_t *model,
+                        const saddle_plan_t *plan, saddle_intent_t *intent)
 {
     const saddle_side_t stance = (saddle_side_t)plan->support;
     const saddle_vec3_t *stance_m = &plan->foot_m[stance];
@@ -116,13 +117,17 @@ static void read_intent(const saddle_planner_t *planner, const saddle_plan_t *pl
         intent->com.velocity_m_s.y = plan->com_velocity_m_s.y;
         return;
     }
+    const saddle_vec2_t landing_m = saddle_unmoved_landing_m(plan);
     intent->step.stance = stance;
     intent->step.half_behind_m = 0.5f * plan->step_length_m;
     intent->step.width_behind_m = plan->step_width_m;
-    intent->step.landing_m.x = plan->landing_m.x;
-    intent->step.landing_m.y = plan->landing_m.y - stance_m->y;
+    intent->step.landing_m.x = landing_m.x;
+    intent->step.landing_m.y = landing_m.y - stance_m->y;
     intent->place.x_m = plan->com_m.x;
     intent->place.phase = saddle_planner_phase(planner);
+    intent->may_place = model->config.placement_gain > 0.0f && plan->phase % 2u == 0u;
+    intent->reference_xcom_m.x = plan->reference.xcom_m.x;
+    intent->reference_xcom_m.y = plan->reference.xcom_m.y - stance_m->y;
 }
 
 /* The plan under the command, or under a stand where the inputs are lost. Its feet are measured as far
@@ -144,10 +149,22 @@ static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_se
                                       saddle_output_t *output)
 {
     saddle_intent_t intent;
-    read_intent(&context->planner, &output->plan, &intent);
+    read_intent(&context->planner, &context->model, &output->plan, &intent);
     output->faults |=
         saddle_supervisor_update(&context->supervisor, &context->model, sensed, &intent, output);
     output->walk = context->supervisor.learning.walk;
+}
+
+/* [E45] From this tick on the plan leads to where the wearer is to land. Neither the swing foot's place
+ * nor its velocity jumps. */
+static void move_landing(saddle_context_t *context, saddle_plan_t *plan)
+{
+    const saddle_placement_t *placement = &context->supervisor.placement;
+    saddle_cycle_t *cycle = &context->planner.cycle;
+    if (placement->known) {
+        saddle_cycle_place(cycle, &context->model, placement->landing_m);
+        plan->landing_m = saddle_vec2_add(saddle_unmoved_landing_m(plan), cycle->swing.moved_m);
+    }
 }
 
 saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
@@ -174,6 +191,7 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
                                                sensed.faults | output->faults, sensed.dt_s);
     plan_walk(context, &sensed, stop, dt_us, output);
     supervise(context, &sensed, output);
+    move_landing(context, &output->plan);
     return SADDLE_OK;
 }
 

@@ -83,6 +83,9 @@ typedef struct {
     float cop_leave;            /**< and where it leaves it, [E39] */
     float landing_early_s; /**< a foot that lands sooner by no more carries then; 0: none, [E43] */
     float landing_late_s;  /**< and one that is late is waited for so long */
+    float placement_gain;  /**< of what the ankles can mend of the XCoM's departure, the landing
+                                follows so much, and of the rest recovery_follow; 0: it stays
+                                where it is planned, [E45] */
     float tick_max_s;      /**< the plan advances by no more than this in one tick */
     float command_max_age_s;    /**< an older command times out: the walk stops */
     float lost_inputs_stop;     /**< 1: lost inputs stop the walk; 0: for recordings, or a
@@ -263,7 +266,7 @@ typedef struct {
     float time_to_via_point_s;          /**< next via point, or end of a shift of weight */
     float time_to_heel_strike_s;        /**< next heel strike, [E12] */
     float time_to_toe_off_s;            /**< next change of support: the swing CoP arrives */
-    saddle_vec2_t landing_m;            /**< where the swing CoP arrives */
+    saddle_vec2_t landing_m;            /**< where the swing CoP arrives; moved, [E45] */
     saddle_vec2_t last_step_m;          /**< from the stance foot before this one to this one */
     saddle_reference_t reference;       /**< to balance by, [E39] */
 } saddle_plan_t;

@@ -82,6 +82,7 @@ static SADDLE_NOINLINE void compare_standing(const saddle_model_t *model,
         .landing_m = from_stance_m,
         .xcom_m = saddle_vec2_sub(xcom_of(model, &planned), posture->cop_m[stance]),
         .departure_m = least_deviation_m(model, verdict->xcom_deviation_m, from_stance_m, &growth),
+        .placement_m = {0.0f, 0.0f},
         .step_time_s = model->config.prediction_horizon_s,
     };
     saddle_recovery_step(model, &target, &verdict->recovery);
@@ -136,10 +137,17 @@ static void predict(const saddle_model_t *model, const saddle_expectation_t *exp
         &ebos, saddle_vec2_add(xcom_of(model, &expected->landing), grown_xcom_m));
 }
 
+/* What a step was compared by. */
+typedef struct {
+    saddle_growth_t growth;
+    saddle_recovery_target_t target;
+    saddle_vec2_t trailing_m;
+} step_comparison_t;
+
 /* Against a step, in the phase where its CoM is at a place. */
-static void compare_step(const saddle_model_t *model, const saddle_wearer_t *wearer,
-                         const saddle_step_t *step, const saddle_step_place_t *place,
-                         saddle_verdict_t *verdict)
+static step_comparison_t compare_step(const saddle_model_t *model, const saddle_wearer_t *wearer,
+                                      const saddle_step_t *step, const saddle_step_place_t *place,
+                                      saddle_verdict_t *verdict)
 {
     const saddle_posture_t *posture = wearer->posture;
     const saddle_side_t stance = step->stance;
@@ -160,18 +168,48 @@ static void compare_step(const saddle_model_t *model, const saddle_wearer_t *wea
         .landing_m = expected.landing_m,
         .xcom_m = xcom_of(model, &expected.landing),
         .departure_m = least_deviation_m(model, verdict->xcom_deviation_m, trailing_m, &growth),
+        .placement_m = {0.0f, 0.0f},
         .step_time_s = expected.step_time_s,
     };
     saddle_recovery_step(model, &target, &verdict->recovery);
+    return (step_comparison_t){growth, target, trailing_m};
+}
+
+/* [E45] The recovery step from the reference's XCoM, which a wearer on the plan keeps to; and a share of
+ * what the ankles can mend. */
+static void place_landing(const saddle_model_t *model, const saddle_wearer_t *wearer,
+                          const saddle_intent_t *intent, const step_comparison_t *compared,
+                          saddle_placement_t *placement)
+{
+    const saddle_vec2_t xcom_m =
+        saddle_vec2_sub(wearer->scores->xcom_m, wearer->posture->cop_m[intent->step.stance]);
+    const saddle_vec2_t departure_m = saddle_vec2_sub(xcom_m, intent->reference_xcom_m);
+    const saddle_vec2_t least_m =
+        least_deviation_m(model, departure_m, compared->trailing_m, &compared->growth);
+    const saddle_vec2_t mended_m =
+        saddle_vec2_sub(saddle_vec2_scale(compared->growth.factor, departure_m), least_m);
+    saddle_recovery_target_t target = compared->target;
+    target.departure_m = least_m;
+    target.placement_m = saddle_vec2_scale(model->config.placement_gain, mended_m);
+    saddle_recovery_t step;
+    saddle_recovery_step(model, &target, &step);
+    placement->known = step.found;
+    placement->landing_m = step.landing_m;
 }
 
 bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
-                    const saddle_intent_t *intent, saddle_verdict_t *verdict)
+                    const saddle_intent_t *intent, saddle_verdict_t *verdict,
+                    saddle_placement_t *placement)
 {
     const saddle_step_tracker_t *steps = wearer->steps;
     if (matches_planned_step(wearer, intent)) {
-        compare_step(model, wearer, &intent->step, &intent->place, verdict);
-        return steps->stance == (uint8_t)intent->step.stance;
+        const step_comparison_t compared =
+            compare_step(model, wearer, &intent->step, &intent->place, verdict);
+        const bool on_stance = steps->stance == (uint8_t)intent->step.stance;
+        if (on_stance && intent->may_place) {
+            place_landing(model, wearer, intent, &compared, placement);
+        }
+        return on_stance;
     }
     const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
     const float speed_m_s = intent->leads ? intent->step.speed_m_s : steps->v_comp_m_s;

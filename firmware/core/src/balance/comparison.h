@@ -16,6 +16,9 @@ typedef struct {
     saddle_step_t step;        /**< the planned one, while walking, */
     saddle_step_place_t place; /**< and where in it the plan is */
     saddle_com_state_t com;    /**< planned, from midway between the feet, while both stand */
+    bool may_place;            /**< while walking: the landing may be moved, [E45], */
+    saddle_vec2_t
+        reference_xcom_m; /**< by the XCoM's departure from this one, from the stance CoP */
 } saddle_intent_t;
 
 /** What is known of the wearer at one instant. */
@@ -33,8 +36,9 @@ void saddle_compare_nothing(saddle_verdict_t *verdict);
 /** Compare with what is planned; without a command, with the walk of the last step or standing. Feet
  *  and CoM are known and the BoS is defined. Sets verdict->compared and writes all that goes with it,
  *  or nothing if there is no walk to compare with. Returns whether the wearer does as planned: makes the
- *  planned step on its stance foot, or is to stand. */
+ *  planned step on its stance foot, or is to stand; sets *placement for one whose landing may be moved. */
 bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
-                    const saddle_intent_t *intent, saddle_verdict_t *verdict);
+                    const saddle_intent_t *intent, saddle_verdict_t *verdict,
+                    saddle_placement_t *placement);
 
 #endif

@@ -54,8 +54,9 @@ void saddle_recovery_step(const saddle_model_t *model, const saddle_recovery_tar
     const float outward = saddle_outward(foot);
     const saddle_vec2_t departure_m = target->departure_m;
     const saddle_vec2_t xcom_m = saddle_vec2_add(target->xcom_m, departure_m);
-    const saddle_vec2_t wanted_m = saddle_vec2_add(
+    const saddle_vec2_t followed_m = saddle_vec2_add(
         target->landing_m, saddle_vec2_scale(model->config.recovery_follow, departure_m));
+    const saddle_vec2_t wanted_m = saddle_vec2_add(followed_m, target->placement_m);
     const float step_time_s = target->step_time_s;
     const float growth = saddle_exp(model->body.natural_frequency_rad_s * step_time_s);
     const float quick_growth =

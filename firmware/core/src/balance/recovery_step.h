@@ -12,6 +12,7 @@ typedef struct {
     saddle_vec2_t landing_m;   /**< planned */
     saddle_vec2_t xcom_m;      /**< planned, when the foot lands */
     saddle_vec2_t departure_m; /**< of the expected XCoM from there */
+    saddle_vec2_t placement_m; /**< the landing's, beyond what follows the departure, [E45] */
     float step_time_s;         /**< of the steps after it */
 } saddle_recovery_target_t;
 

@@ -155,9 +155,10 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     const uint32_t faults = sensed->faults | saddle_score_faults(known, scores);
     bool on_plan = false;
     verdict->compared = false;
+    supervisor->placement.known = false;
     if (is_measured(known) && scores->bos.defined) {
         const saddle_wearer_t wearer = {steps, sensed->measurement, &posture, scores, &support};
-        on_plan = saddle_compare(model, &wearer, intent, verdict);
+        on_plan = saddle_compare(model, &wearer, intent, verdict, &supervisor->placement);
     }
     if (!verdict->compared) {
         saddle_compare_nothing(verdict);

@@ -28,8 +28,14 @@
 /* A swing foot comes down on a slope from no higher. */
 #define APPROACH_MAX_M 0.03f
 
-/* A foot is waited for until the CoM is further ahead by no more than this share of the quarter. */
+/* A foot is waited for until the CoM is further ahead by no more than this share of its way to that foot
+ * when it was to land. */
 #define LATE_SHARE_MAX 0.5f
+
+/* A landing is moved no later than this before it, and the foot no faster in the mean: 3 m/s at most
+ * with E22's profile. [E45] */
+#define PLACEMENT_FROZEN_S 0.06f
+#define PLACEMENT_SPEED_M_S 1.6f
 
 /* The CoM stays within this share of the pendulum's length from the stance foot, squared. */
 #define REACH_SHARE 0.8f
@@ -196,6 +202,10 @@ static void lift_off(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_
     swing->offset_m.x = lifted_m.x - swing_way(cycle, model, cycle->x_m, phase).value;
     swing->offset_m.y = lifted_m.y - swing->line_y_m;
     swing->stretch_m = 0.0f;
+    swing->moved_m.x = 0.0f;
+    swing->moved_m.y = 0.0f;
+    swing->moving_x.length_m = 0.0f;
+    swing->moving_y.length_m = 0.0f;
 }
 
 static float shaping_speed_m_s(const saddle_cycle_t *cycle)
@@ -275,11 +285,13 @@ static SADDLE_NOINLINE void pass_saddle(saddle_cycle_t *cycle, const saddle_mode
                                         saddle_fixed_t speed)
 {
     place_t place = reference_at(cycle, model, SADDLE_PHASE_LANDING); /* no mismatch is left */
+    const saddle_vec2_t moved_m = cycle->swing.moved_m;
+    const saddle_fixed_t moved = saddle_position_from_m(moved_m.x);
     const landing_t landing = {
-        .step_m = {2.0f * cycle->quarter.length_m, cycle->swing.line_y_m},
-        .step_nm = 2 * saddle_position_to_nm(cycle->quarter_length),
-        .behind = cycle->quarter_length,
-        .behind_m = cycle->quarter.length_m,
+        .step_m = {2.0f * cycle->quarter.length_m + moved_m.x, cycle->swing.line_y_m + moved_m.y},
+        .step_nm = 2 * saddle_position_to_nm(cycle->quarter_length) + saddle_position_to_nm(moved),
+        .behind = cycle->quarter_length + moved,
+        .behind_m = cycle->quarter.length_m + moved_m.x,
     };
     begin_step(cycle, model, &landing, &place, saddle_speed_to_m_s(speed));
 }
@@ -375,6 +387,18 @@ static float swing_progress(const saddle_cycle_t *cycle, float progress)
     return 0.5f * progress + (saddle_cycle_before_landing(cycle) ? 0.5f : 0.0f);
 }
 
+/* [E45] By as much as its landing is moved, on the way there. */
+static void move_foot(const saddle_swing_t *swing, float x_m, float speed_m_s,
+                      saddle_swing_state_t *foot)
+{
+    const saddle_sample_t x = saddle_blend_at(&swing->moving_x, x_m);
+    const saddle_sample_t y = saddle_blend_at(&swing->moving_y, x_m);
+    foot->position_m.x += swing->moved_m.x + x.value;
+    foot->position_m.y += swing->moved_m.y + y.value;
+    foot->velocity_m_s.x += x.slope * speed_m_s;
+    foot->velocity_m_s.y += y.slope * speed_m_s;
+}
+
 static void swing_foot(const saddle_cycle_t *cycle, const saddle_model_t *model, float x_m,
                        saddle_sin_cos_t phase, saddle_swing_state_t *foot)
 {
@@ -388,6 +412,9 @@ static void swing_foot(const saddle_cycle_t *cycle, const saddle_model_t *model,
         .landing_x_m = saddle_cycle_before_landing(cycle) ? 2.0f * cycle->quarter.length_m : 0.0f,
     };
     saddle_foot_swing(&cycle->swing, &place, foot);
+    if (cycle->swing.moving_x.length_m > 0.0f) {
+        move_foot(&cycle->swing, x_m, speed_m_s, foot);
+    }
 }
 
 /* The step that the swing foot makes if it lands where it is, and the CoM there. */
@@ -423,7 +450,8 @@ static SADDLE_NOINLINE void land_here(saddle_cycle_t *cycle, const saddle_model_
 /* How far the CoM may go on over the stance foot beyond the planned landing: within reach. */
 static float late_max_m(const saddle_cycle_t *cycle, const saddle_model_t *model)
 {
-    const float within_m = saddle_smaller(LATE_SHARE_MAX * cycle->quarter.length_m,
+    const float behind_m = cycle->quarter.length_m + cycle->swing.moved_m.x; /* the landing foot */
+    const float within_m = saddle_smaller(LATE_SHARE_MAX * behind_m,
                                           model->body.half_step_max_m - cycle->quarter.length_m);
     return saddle_smaller(model->config.landing_late_s * cycle->profile.speed_m_s, within_m);
 }
@@ -555,6 +583,43 @@ SADDLE_NOINLINE bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model
     follow_shape(cycle, model, phase, &place);
     redirect_swing(cycle, model, swing_m, speed_m_s, phase);
     return true;
+}
+
+/* By how much the swing foot is moved along an axis, and its change with the CoM's x. */
+static saddle_sample_t moved_at(float moved_m, const saddle_blend_t *moving, float x_m)
+{
+    const saddle_sample_t landing = {moved_m, 0.0f};
+    return sum(landing, saddle_blend_at(moving, x_m));
+}
+
+/* [E45] */
+SADDLE_NOINLINE void saddle_cycle_place(saddle_cycle_t *cycle, const saddle_model_t *model,
+                                        saddle_vec2_t step_m)
+{
+    saddle_swing_t *swing = &cycle->swing;
+    const float x_m = cycle->x_m;
+    const float half_m = cycle->quarter.length_m;
+    const float left_m = half_m - x_m;
+    const float left_s = left_m / shaping_speed_m_s(cycle);
+    if (!saddle_cycle_before_landing(cycle) || left_s < PLACEMENT_FROZEN_S) {
+        return;
+    }
+    const saddle_sample_t x = moved_at(swing->moved_m.x, &swing->moving_x, x_m);
+    const saddle_sample_t y = moved_at(swing->moved_m.y, &swing->moving_y, x_m);
+    const float way_m = left_s * PLACEMENT_SPEED_M_S;
+    const float moved_x_m =
+        saddle_clamp(step_m.x - 2.0f * half_m, x.value - way_m, x.value + way_m);
+    const float moved_y_m =
+        saddle_clamp(step_m.y - swing->line_y_m, y.value - way_m, y.value + way_m);
+    const float ahead_min_m = cycle->last_swing ? half_m : LANDING_AHEAD_MIN_M; /* to brake on */
+    const float outward = saddle_outward(saddle_other_side(cycle->quarter.stance));
+    const float line_m = saddle_magnitude(swing->line_y_m);
+    swing->moved_m.x =
+        saddle_clamp(moved_x_m, ahead_min_m - half_m, model->body.half_step_max_m - half_m);
+    swing->moved_m.y = outward * saddle_clamp(outward * moved_y_m, LANDING_WIDTH_MIN_M - line_m,
+                                              2.0f * model->config.step_width_slow_m - line_m);
+    swing->moving_x = saddle_blend(x, (saddle_sample_t){swing->moved_m.x, 0.0f}, x_m, left_m);
+    swing->moving_y = saddle_blend(y, (saddle_sample_t){swing->moved_m.y, 0.0f}, x_m, left_m);
 }
 
 /* [E43] */

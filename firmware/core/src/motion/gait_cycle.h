@@ -56,6 +56,11 @@ bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddl
 bool saddle_cycle_touch_down(saddle_cycle_t *cycle, const saddle_model_t *model,
                              float heel_strike_rad);
 
+/** [E45] Let the swing foot land after step_m from the stance CoP, as far as the legs reach and the foot
+ *  comes until then: the way there fades in without a jump. Nothing changes after a landing until the
+ *  foot via point, nor in the last 60 ms before the next one. */
+void saddle_cycle_place(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m);
+
 /** Whether the running quarter leads to a saddle via point, where the swing foot lands. */
 bool saddle_cycle_before_landing(const saddle_cycle_t *cycle);
 

@@ -62,8 +62,8 @@ static void write_step_events(const saddle_cycle_t *cycle, const saddle_model_t 
 {
     const float distance_m = saddle_cycle_distance_to_via_point_m(cycle);
     const float half_step_m = half_step_to_landing_m(cycle, model, distance_m);
-    plan->landing_m.x = 2.0f * half_step_m;
-    plan->landing_m.y = cycle->stance_y_m + cycle->swing.line_y_m;
+    plan->landing_m.x = 2.0f * half_step_m + cycle->swing.moved_m.x;
+    plan->landing_m.y = cycle->stance_y_m + cycle->swing.line_y_m + cycle->swing.moved_m.y;
     if (cycle->last_swing && !saddle_cycle_before_landing(cycle) && cycle->profile.target == 0) {
         plan->time_to_via_point_s = time_of_last_swing_s(cycle, distance_m);
         plan->time_to_heel_strike_s = SADDLE_TIME_MAX_S;

@@ -193,12 +193,24 @@ static saddle_vec2_t forward_and_outward(saddle_vec2_t step_m, saddle_side_t foo
     return turned_m;
 }
 
-/* The step under way; where in it is left to the caller. */
+saddle_vec2_t saddle_unmoved_landing_m(const saddle_plan_t *plan)
+{
+    const saddle_side_t stance = (saddle_side_t)plan->support;
+    if (plan->phase % 2u != 0u || plan->step_length_m == 0.0f) {
+        return plan->landing_m;
+    }
+    const float across_m = saddle_outward(saddle_other_side(stance)) * plan->step_width_m;
+    return (saddle_vec2_t){plan->step_length_m, plan->foot_m[stance].y + across_m};
+}
+
+/* The step under way; where in it is left to the caller. From the foot via point on its landing may be
+ * moved, [E45], but not in the reference. */
 static step_t running_step(const saddle_plan_t *plan, float speed_m_s)
 {
     const saddle_side_t stance = (saddle_side_t)plan->support;
     const saddle_side_t other = saddle_other_side(stance);
-    const saddle_vec2_t next_m = {plan->landing_m.x, plan->landing_m.y - plan->foot_m[stance].y};
+    const saddle_vec2_t landing_m = saddle_unmoved_landing_m(plan);
+    const saddle_vec2_t next_m = {landing_m.x, landing_m.y - plan->foot_m[stance].y};
     step_t step;
     step.stance = stance;
     step.x_m = 0.0f;
@@ -294,7 +306,7 @@ static float landing_speed_m_s(const saddle_plan_t *plan)
     if (plan->time_to_toe_off_s < LANDING_NOW_S) {
         return plan->speed_m_s;
     }
-    const float way_m = 0.5f * plan->landing_m.x - plan->com_m.x;
+    const float way_m = 0.5f * saddle_unmoved_landing_m(plan).x - plan->com_m.x;
     return saddle_larger(2.0f * way_m / plan->time_to_toe_off_s - plan->speed_m_s, SPEED_MIN_M_S);
 }
 

@@ -5,6 +5,9 @@
 
 #include <saddlewalk/private/context.h>
 
+/** Where the walk alone has the running swing land: plan->landing_m unless that was moved, [E45]. */
+saddle_vec2_t saddle_unmoved_landing_m(const saddle_plan_t *plan);
+
 /** The reference after_s >= 0 after a valid plan, in the plan's frame: the speed changes on as it does
  *  now, and a landing begins a step like the one before. [E39] [E40] in a step, [E41] in a first or
  *  last swing, [E42] while both feet stand. */

@@ -100,8 +100,10 @@ typedef struct {
     saddle_vec2_t offset_m;             /**< from the line to where it lifted off: fades out */
     float stretch_m; /**< along x, from its way in this quarter to that in the last: fades out */
     float clearance_m;
-    float approach, approach_max_m; /**< slope on which it comes down, and from what height */
-    float path_width_m;             /**< of the quarter whose lateral path is followed */
+    float approach, approach_max_m;    /**< slope on which it comes down, and from what height */
+    float path_width_m;                /**< of the quarter whose lateral path is followed */
+    saddle_vec2_t moved_m;             /**< its landing, from where the walk alone has it, [E45] */
+    saddle_blend_t moving_x, moving_y; /**< what the foot is off that, over the CoM's x */
 } saddle_swing_t;
 
 typedef struct {
@@ -225,10 +227,17 @@ typedef struct {
     uint8_t ticks_since[4];  /**< since a tick had this level, at most 255 */
 } saddle_level_state_t;
 
+/** Where the swing foot is to land, [E45]. */
+typedef struct {
+    bool known;
+    saddle_vec2_t landing_m; /**< from the stance CoP */
+} saddle_placement_t;
+
 typedef struct {
     saddle_step_tracker_t steps;
     saddle_learning_t learning;
     saddle_level_state_t level;
+    saddle_placement_t placement; /**< of the last tick */
 } saddle_supervisor_t;
 
 /** Caller-owned state; treat the fields as private. */

@@ -1,0 +1,137 @@
+/** The reference by itself: the pendulum's equations, the soles, and what it does not follow. */
+#include "core_test.h"
+
+#include "motion/plan_output.h"
+#include "motion/planner.h"
+#include "motion/reference.h"
+
+#define TICK_US 1000u
+#define TICK_S 1e-3
+
+static saddle_config_t config;
+static saddle_planner_t planner;
+static saddle_plan_t plan;
+
+void setUp(void)
+{
+    config = paper_config();
+    memset(&planner, 0, sizeof planner);
+}
+
+void tearDown(void) {}
+
+/* A steady walk, some way into it. */
+static void walk(float speed_m_s, uint32_t time_us)
+{
+    const saddle_command_t command = {(uint8_t)SADDLE_COMMAND_WALK, speed_m_s, 0.17f};
+    saddle_planner_join(&planner, model_of(&config), &command);
+    for (uint32_t us = 0; us < time_us; us += TICK_US) {
+        saddle_planner_update(&planner, model_of(&config), &command, NULL, TICK_US);
+    }
+    saddle_plan_write(&planner, model_of(&config), &plan);
+}
+
+static saddle_reference_t reference_after(double after_s)
+{
+    saddle_reference_t reference;
+    saddle_reference(model_of(&config), &plan, (float)after_s, &reference);
+    return reference;
+}
+
+/* [E39] By the pendulum's closed form about a CoP that moves evenly over the millisecond. A float of the
+ * distance is rounded to 6e-8, and a corner of the CoP's path lies within one of them: 3e-4 m. */
+static void test_steady_reference_is_a_pendulum_about_its_cop(void)
+{
+    static const float speeds[] = {0.3f, 0.7f, 1.2f, 1.8f};
+    for (size_t i = 0; i < COUNT_OF(speeds); i++) {
+        walk(speeds[i], 3000000u);
+        const double w = (double)model_of(&config)->body.natural_frequency_rad_s;
+        int corners = 0;
+        saddle_reference_t last = reference_after(0.0);
+        for (int k = 1; k < 350; k++) {
+            const saddle_reference_t next = reference_after(k * TICK_S);
+            const double cop = 0.5 * ((double)last.cop_m.x + (double)next.cop_m.x);
+            const double xcom = cop + ((double)last.xcom_m.x - cop) * exp(w * TICK_S);
+            const double between = 0.5 * ((double)last.xcom_m.x + (double)next.xcom_m.x);
+            const double com = between + ((double)last.com_m.x - between) * exp(-w * TICK_S);
+            corners += fabs(xcom - (double)next.xcom_m.x) > 2e-6 ? 1 : 0;
+            TEST_ASSERT_DOUBLE_WITHIN(3e-4, xcom, next.xcom_m.x);
+            TEST_ASSERT_DOUBLE_WITHIN(2e-6, com, next.com_m.x);
+            last = next;
+        }
+        TEST_ASSERT_TRUE(corners <= 2); /* of the landing, and of the crossing's end */
+    }
+}
+
+static void test_cop_stays_on_the_soles_and_the_loads_add_up(void)
+{
+    const double sole = (double)config.cop_range_m + 1e-6;
+    walk(1.2f, 3000000u);
+    for (int k = 0; k < 350; k++) {
+        const saddle_reference_t at = reference_after(k * TICK_S);
+        TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 1.0, at.load[0] + at.load[1]);
+        TEST_ASSERT_TRUE(at.load[0] >= 0.0f && at.load[1] >= 0.0f);
+        if (at.load[plan.support] == 1.0f) {
+            TEST_ASSERT_TRUE(fabs((double)at.cop_m.x) <= sole);
+        }
+    }
+}
+
+static void test_continued_reference_is_that_of_the_plan_then(void)
+{
+    walk(1.0f, 2500000u);
+    for (int k = 0; k < 5; k++) {
+        const saddle_reference_t foreseen = reference_after(0.08);
+        const int64_t origin_nm = plan.origin_x_nm;
+        walk(1.0f, 2580000u + 80000u * (uint32_t)k);
+        const double moved = 1e-9 * (double)(plan.origin_x_nm - origin_nm);
+        /* The plan's distance and after_s times its speed are rounded apart. */
+        TEST_ASSERT_DOUBLE_WITHIN(5e-6, foreseen.xcom_m.x, moved + (double)plan.reference.xcom_m.x);
+        TEST_ASSERT_DOUBLE_WITHIN(5e-6, foreseen.xcom_m.y, plan.reference.xcom_m.y);
+    }
+}
+
+static void test_landing_that_was_moved_is_not_in_the_reference(void)
+{
+    walk(1.2f, 3000000u);
+    while (planner.cycle.phase % 2u != 0u || planner.cycle.x_m < 0.05f) {
+        saddle_planner_advance(&planner, model_of(&config), TICK_US);
+    }
+    saddle_plan_write(&planner, model_of(&config), &plan);
+    const saddle_plan_t unmoved = plan;
+    const saddle_vec2_t landing_m = saddle_unmoved_landing_m(&unmoved);
+    ASSERT_SAME_FLOAT(unmoved.landing_m.x, landing_m.x);
+    ASSERT_SAME_FLOAT(unmoved.landing_m.y, landing_m.y);
+    plan.landing_m.x += 0.1f;
+    plan.landing_m.y += 0.05f;
+    for (int k = 0; k < 5; k++) { /* into the step after it */
+        const saddle_reference_t moved = reference_after(0.08 * k);
+        saddle_reference_t as_planned;
+        saddle_reference(model_of(&config), &unmoved, 0.08f * (float)k, &as_planned);
+        ASSERT_SAME_FLOAT(as_planned.xcom_m.x, moved.xcom_m.x);
+        ASSERT_SAME_FLOAT(as_planned.cop_m.y, moved.cop_m.y);
+    }
+}
+
+static void test_who_stands_is_at_rest_between_the_feet(void)
+{
+    saddle_planner_reset(&planner, model_of(&config));
+    saddle_plan_write(&planner, model_of(&config), &plan);
+    const saddle_reference_t at = reference_after(0.1);
+    const double middle = 0.5 * ((double)plan.foot_m[0].y + (double)plan.foot_m[1].y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, middle, at.com_m.y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, middle, at.xcom_m.y);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, middle, at.cop_m.y);
+    TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.5, at.load[0]);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_steady_reference_is_a_pendulum_about_its_cop);
+    RUN_TEST(test_cop_stays_on_the_soles_and_the_loads_add_up);
+    RUN_TEST(test_continued_reference_is_that_of_the_plan_then);
+    RUN_TEST(test_landing_that_was_moved_is_not_in_the_reference);
+    RUN_TEST(test_who_stands_is_at_rest_between_the_feet);
+    return UNITY_END();
+}
