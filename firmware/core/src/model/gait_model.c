@@ -39,8 +39,8 @@ saddle_quarter_t saddle_quarter(const saddle_model_t *model, saddle_side_t stanc
 }
 
 /* [E4] */
-saddle_fixed_t saddle_half_step(const saddle_model_t *model, saddle_side_t foot,
-                                saddle_fixed_t speed)
+SADDLE_NOINLINE saddle_fixed_t saddle_half_step(const saddle_model_t *model, saddle_side_t foot,
+                                                saddle_fixed_t speed)
 {
     return saddle_position_sum(saddle_distance(speed, model->body.half_step_slope[foot]),
                                model->body.half_step_intercept[foot]);
