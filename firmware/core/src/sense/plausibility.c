@@ -70,14 +70,14 @@ static uint32_t check_foot(const saddle_model_t *model, const saddle_measurement
     return 0;
 }
 
-/* Let time pass for a number that keeps its bits, or start anew. */
-static void follow_timer(saddle_frozen_timer_t *timer, bool unchanged, saddle_vec2_t velocity_m_s,
-                         float dt_s)
+static void begin_timer(saddle_frozen_timer_t *timer)
 {
-    if (!unchanged) {
-        *timer = (saddle_frozen_timer_t){.unchanged_s = 0.0f};
-        return;
-    }
+    *timer = (saddle_frozen_timer_t){.unchanged_s = 0.0f};
+}
+
+/* Let time pass for a number that keeps its bits. */
+static void follow_timer(saddle_frozen_timer_t *timer, saddle_vec2_t velocity_m_s, float dt_s)
+{
     timer->unchanged_s += dt_s;
     timer->moved_m = saddle_vec2_add(timer->moved_m, saddle_vec2_scale(dt_s, velocity_m_s));
 }
@@ -88,11 +88,27 @@ static bool foot_frozen(saddle_plausibility_t *plausibility, const saddle_model_
 {
     saddle_frozen_timer_t *timer = &plausibility->foot_timer[side];
     const saddle_vec2_t velocity_m_s = measurement->com.velocity_m_s;
-    const bool unchanged = same(measurement->foot[side].cop_m, plausibility->cop_m[side]) &&
-                           !vec2_within(velocity_m_s, REST_M_S);
-    follow_timer(timer, unchanged, velocity_m_s, dt_s);
+    if (!same(measurement->foot[side].cop_m, plausibility->cop_m[side]) ||
+        vec2_within(velocity_m_s, REST_M_S)) {
+        begin_timer(timer);
+        return false;
+    }
+    follow_timer(timer, velocity_m_s, dt_s);
     return timer->unchanged_s > model->config.foot_max_age_s &&
            !vec2_within(timer->moved_m, FROZEN_DISTANCE_M);
+}
+
+/* The CoM has changed: from now on a foot on the ground should stay where it is. */
+static void begin_watch(saddle_plausibility_t *plausibility,
+                        const saddle_measurement_t *measurement)
+{
+    begin_timer(&plausibility->com_timer);
+    plausibility->planned_distance_m = 0.0f;
+    plausibility->com_contradicted = false;
+    for (int side = 0; side < 2; side++) {
+        plausibility->stood[side] = measurement->foot[side].contact;
+        plausibility->anchor_m[side] = measurement->foot[side].cop_m;
+    }
 }
 
 /* A foot on the ground is where it was, if the CoM went the way that its velocity says. */
@@ -113,16 +129,19 @@ static bool com_frozen(saddle_plausibility_t *plausibility, const saddle_model_t
                        const saddle_measurement_t *measurement, float planned_m_s, float dt_s)
 {
     saddle_frozen_timer_t *timer = &plausibility->com_timer;
-    const bool unchanged = measurement->com.height_m == plausibility->height_m &&
-                           same(measurement->com.velocity_m_s, plausibility->velocity_m_s);
-    follow_timer(timer, unchanged, measurement->com.velocity_m_s, dt_s);
-    plausibility->planned_distance_m =
-        unchanged ? plausibility->planned_distance_m + planned_m_s * dt_s : 0.0f;
-    plausibility->com_contradicted = (plausibility->com_contradicted && unchanged) ||
-                                     plausibility->planned_distance_m > FROZEN_DISTANCE_M;
+    if (measurement->com.height_m != plausibility->height_m ||
+        !same(measurement->com.velocity_m_s, plausibility->velocity_m_s)) {
+        begin_watch(plausibility, measurement);
+        return false;
+    }
+    follow_timer(timer, measurement->com.velocity_m_s, dt_s);
+    plausibility->planned_distance_m += planned_m_s * dt_s;
+    if (plausibility->planned_distance_m > FROZEN_DISTANCE_M) {
+        plausibility->com_contradicted = true;
+    }
     for (int side = 0; side < 2; side++) {
         const bool contact = measurement->foot[side].contact;
-        const bool anchored = unchanged && contact && plausibility->stood[side];
+        const bool anchored = contact && plausibility->stood[side];
         plausibility->stood[side] = contact;
         if (contradicts(&plausibility->anchor_m[side], anchored, measurement->foot[side].cop_m,
                         timer->moved_m)) {
@@ -155,12 +174,11 @@ static uint32_t check_frozen(saddle_plausibility_t *plausibility, const saddle_m
 /* What was not measured contradicts nothing. */
 static void forget_frozen(saddle_plausibility_t *plausibility)
 {
-    const saddle_frozen_timer_t none = {.unchanged_s = 0.0f};
-    plausibility->com_timer = none;
+    begin_timer(&plausibility->com_timer);
     plausibility->planned_distance_m = 0.0f;
     plausibility->com_contradicted = false;
     for (int side = 0; side < 2; side++) {
-        plausibility->foot_timer[side] = none;
+        begin_timer(&plausibility->foot_timer[side]);
         plausibility->stood[side] = false;
     }
 }
