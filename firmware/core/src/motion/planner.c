@@ -266,12 +266,15 @@ static void watch_swing(saddle_planner_t *planner, const saddle_measurement_t *m
     if (measured == NULL || saddle_stands(planner) || !measured->foot[stance].contact) {
         return;
     }
-    const bool in_air = !measured->foot[swing].contact;
-    const float seen_s = 1.0e-6f * ((float)dt_us - (float)measured->foot[swing].age_us);
-    const float way_m = saddle_cycle_distance_to_via_point_m(cycle);
-    planner->foot_lifted = planner->foot_lifted || in_air;
-    cycle->foot_is_late = in_air && saddle_cycle_before_landing(cycle) &&
-                          way_m < cycle->profile.speed_m_s * (seen_s - LANDING_TOLERANCE_S);
+    if (measured->foot[swing].contact) {
+        return;
+    }
+    planner->foot_lifted = true;
+    if (saddle_cycle_before_landing(cycle)) {
+        const float seen_s = 1.0e-6f * ((float)dt_us - (float)measured->foot[swing].age_us);
+        const float way_m = saddle_cycle_distance_to_via_point_m(cycle);
+        cycle->foot_is_late = way_m < cycle->profile.speed_m_s * (seen_s - LANDING_TOLERANCE_S);
+    }
 }
 
 /* [E43] A foot that was in the air and is on the ground, a little before its time, carries from now on. */
