@@ -137,33 +137,35 @@ static void predict(const saddle_model_t *model, const saddle_expectation_t *exp
         &ebos, saddle_vec2_add(xcom_of(model, &expected->landing), grown_xcom_m));
 }
 
-/* What a step was compared by. */
+/* A step, the phase where its CoM is at a place, and what it was compared by. */
 typedef struct {
+    const saddle_step_t *step;
+    const saddle_step_place_t *place;
     saddle_growth_t growth;
     saddle_recovery_target_t target;
     saddle_vec2_t trailing_m;
 } step_comparison_t;
 
-/* Against a step, in the phase where its CoM is at a place. */
-static step_comparison_t compare_step(const saddle_model_t *model, const saddle_wearer_t *wearer,
-                                      const saddle_step_t *step, const saddle_step_place_t *place,
-                                      saddle_verdict_t *verdict)
+static void compare_step(const saddle_model_t *model, const saddle_wearer_t *wearer,
+                         step_comparison_t *compared, saddle_verdict_t *verdict)
 {
     const saddle_posture_t *posture = wearer->posture;
-    const saddle_side_t stance = step->stance;
+    const saddle_side_t stance = compared->step->stance;
     const saddle_side_t other = saddle_other_side(stance);
     saddle_expectation_t expected;
-    saddle_expect(model, step, place, &expected);
+    saddle_expect(model, compared->step, compared->place, &expected);
     const saddle_vec2_t stance_m = posture->cop_m[stance];
     const saddle_vec2_t trailing_m = saddle_vec2_sub(posture->cop_m[other], stance_m);
     const saddle_growth_t growth =
         saddle_growth(model, expected.time_s, wearer->measurement->foot[other].contact);
+    compared->growth = growth;
+    compared->trailing_m = trailing_m;
     saddle_com_state_t *planned = &expected.now;
     planned->com_m = saddle_vec2_add(stance_m, planned->com_m);
     compare_state(model, wearer, planned, verdict);
     predict(model, &expected, saddle_vec2_sub(posture->com.com_m, planned->com_m), &growth,
             verdict);
-    const saddle_recovery_target_t target = {
+    compared->target = (saddle_recovery_target_t){
         .stance = stance,
         .landing_m = expected.landing_m,
         .xcom_m = xcom_of(model, &expected.landing),
@@ -171,15 +173,16 @@ static step_comparison_t compare_step(const saddle_model_t *model, const saddle_
         .placement_m = {0.0f, 0.0f},
         .step_time_s = expected.step_time_s,
     };
-    saddle_recovery_step(model, &target, &verdict->recovery);
-    return (step_comparison_t){growth, target, trailing_m};
+    saddle_recovery_step(model, &compared->target, &verdict->recovery);
 }
 
 /* [E45] The recovery step from the reference's XCoM, which a wearer on the plan keeps to; and a share of
  * what the ankles can mend. */
-static void place_landing(const saddle_model_t *model, const saddle_wearer_t *wearer,
-                          const saddle_intent_t *intent, const step_comparison_t *compared,
-                          saddle_placement_t *placement)
+static SADDLE_NOINLINE void place_landing(const saddle_model_t *model,
+                                          const saddle_wearer_t *wearer,
+                                          const saddle_intent_t *intent,
+                                          const step_comparison_t *compared,
+                                          saddle_placement_t *placement)
 {
     const saddle_vec2_t xcom_m =
         saddle_vec2_sub(wearer->scores->xcom_m, wearer->posture->cop_m[intent->step.stance]);
@@ -202,9 +205,11 @@ bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
                     saddle_placement_t *placement)
 {
     const saddle_step_tracker_t *steps = wearer->steps;
+    step_comparison_t compared;
     if (matches_planned_step(wearer, intent)) {
-        const step_comparison_t compared =
-            compare_step(model, wearer, &intent->step, &intent->place, verdict);
+        compared.step = &intent->step;
+        compared.place = &intent->place;
+        compare_step(model, wearer, &compared, verdict);
         const bool on_stance = steps->stance == (uint8_t)intent->step.stance;
         if (on_stance && intent->may_place) {
             place_landing(model, wearer, intent, &compared, placement);
@@ -219,7 +224,9 @@ bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
         nominal_step(model, steps, speed_m_s, &own);
         const saddle_step_place_t place =
             saddle_step_place(&own, posture->com.com_m.x - posture->cop_m[own.stance].x);
-        compare_step(model, wearer, &own, &place, verdict);
+        compared.step = &own;
+        compared.place = &place;
+        compare_step(model, wearer, &compared, verdict);
     } else if (!walks && (intent->leads || steps->stands)) {
         compare_standing(model, wearer, &intent->com, verdict);
     }
