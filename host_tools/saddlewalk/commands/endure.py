@@ -101,6 +101,7 @@ def run(args: argparse.Namespace) -> int:
 
     from saddlewalk.evaluation.endurance import endure, figures, grouped
     from saddlewalk.physics.plants import chosen_plant
+    from saddlewalk.workers import identity
 
     plant = chosen_plant(args)
     _check(args, plant)
@@ -109,6 +110,7 @@ def run(args: argparse.Namespace) -> int:
     with progress_bar("walks", len(courses)) as progress:
         outcomes = endure(courses, plant, config, workers_of(args), progress)
     console = Console(width=None if sys.stdout.isatty() else FILE_WIDTH)
+    console.print(f"saddlewalk {identity()}")
     groups = list(grouped(outcomes))
     console.print(_table(groups, f"{plant.body or 'point mass'}, seed {args.seed}"))
     total = figures(outcomes)

@@ -164,9 +164,13 @@ def _emulate(
     from saddlewalk.evaluation.region import CLAIMS, POSTURES, explore, grid
     from saddlewalk.evaluation.side_by_side import walker_figures
     from saddlewalk.evaluation.walks import KINDS
+    from saddlewalk.workers import identity
 
     count = args.walks or WALKS
-    console.print(f"seed {args.seed}, {count} pushed walks of each kind, {workers_of(args)}")
+    console.print(
+        f"saddlewalk {identity()}: seed {args.seed}, {count} pushed walks of each kind, "
+        f"{workers_of(args)}"
+    )
     walks = _walk(args, count, setting, config)
     by_kind = {kind: [walk for walk in walks if walk.trial.kind == kind] for kind in KINDS}
     detections = {kind: detection_of(by_kind[kind]) for kind in KINDS}
