@@ -15,7 +15,10 @@ from pathlib import Path
 
 FIRMWARE = Path(__file__).resolve().parents[1] / "firmware"
 CORE = FIRMWARE / "core"
-HEADERS = {"core": ["saddlewalk.h"], "joints": ["joints.h", "estimator.h", "joint_command.h"]}
+HEADERS = {
+    "core": ["saddlewalk.h"],
+    "joints": ["joints.h", "estimator.h", "joint_command.h", "joint_walk.h"],
+}
 LAYER = re.compile(r"^saddle_layer\(([\w/]+)([^)]*)\)", re.MULTILINE)
 INCLUDE = re.compile(r"^#include ([<\"])(.+)[>\"]\n", re.MULTILINE)
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from saddlewalk.core import ffi, library
+from saddlewalk.emulation.wearer import Plan, RecoveryStep
 from saddlewalk.errors import UserError
 
 
@@ -65,6 +66,7 @@ class Estimator:
         bad = library().saddle_estimator_check(config)
         if bad != ffi().NULL:
             raise UserError(f"{ffi().string(bad).decode()} is out of its range")
+        self.config = config
         self._state = ffi().new("saddle_estimator_t *")
         self.sensors = ffi().new("saddle_sensors_t *")
         library().saddle_estimator_init(self._state, body, config)
@@ -83,3 +85,75 @@ def commands(body: Any, drive: Any, estimate: Any, intent: Any) -> Any:
     result = ffi().new("saddle_joint_commands_t *")
     library().saddle_joint_commands(body, drive, estimate, intent, result)
     return result
+
+
+class Controller:
+    """Walking layer and joint commands of one body, from the plan and the estimate.
+
+    `walk` and `drive` are their configurations; change them before the first `commands()`. `intent`
+    is the last saddle_intent_t *.
+    """
+
+    def __init__(self, body: Any, double_support_share: float) -> None:
+        lib = library()
+        self.drive = ffi().new("saddle_drive_config_t *", lib.saddle_drive_default())
+        self.walk = ffi().new("saddle_joint_walk_config_t *", lib.saddle_joint_walk_default())
+        self.walk.double_support_share = double_support_share
+        self._body = body
+        self._state = ffi().new("saddle_joint_walk_t *")
+        self._input = ffi().new("saddle_joint_walk_input_t *")
+        self._plan = ffi().new("saddle_plan_t *")
+        self._verdict = ffi().new("saddle_verdict_t *")
+        self.intent = ffi().new("saddle_intent_t *")
+        self._commands = ffi().new("saddle_joint_commands_t *")
+
+    def commands(
+        self, time_us: int, plan: Plan | None, estimate: Any, takes_recovery_step: bool = True
+    ) -> Any:
+        """saddle_joint_walk_update() and saddle_joint_commands(): a saddle_joint_commands_t * that
+        is reused.
+        """
+        lib = library()
+        if not self._state.initialised:
+            lib.saddle_joint_walk_init(self._state, self._body, self.walk)
+        self._input.time_us = time_us
+        self._input.plan = ffi().NULL if plan is None else _fill_plan(self._plan, plan)
+        recovery = plan.recovery if plan and takes_recovery_step else None
+        self._input.verdict = _fill_verdict(self._verdict, recovery) if recovery else ffi().NULL
+        lib.saddle_joint_walk_update(self._state, self._input, estimate, self.intent)
+        lib.saddle_joint_commands(self._body, self.drive, estimate, self.intent, self._commands)
+        return self._commands
+
+
+def _fill_plan(target: Any, plan: Plan) -> Any:
+    """What the walking layer reads of a plan."""
+    target.valid = True
+    target.mode, target.support = plan.mode, plan.support
+    target.speed_m_s, target.step_length_m = plan.speed_m_s, plan.step_length_m
+    target.com_m.z = plan.height_m
+    for foot, place_m, height_m in zip(
+        target.foot_m, plan.feet_m, plan.foot_heights_m, strict=True
+    ):
+        foot.x, foot.y, foot.z = place_m.real, place_m.imag, height_m
+    target.foot_pitch_rad = plan.pitch_rad
+    rate = plan.swing_velocity_m_s
+    swing = target.swing_velocity_m_s
+    swing.x, swing.y, swing.z = rate.real, rate.imag, plan.swing_rise_m_s
+    target.time_to_via_point_s = plan.time_to_via_point_s
+    target.time_to_toe_off_s = plan.time_to_landing_s
+    _fill_point(target.landing_m, plan.landing_m)
+    reference = plan.reference(0.0)
+    _fill_point(target.reference.cop_m, reference.cop_m)
+    _fill_point(target.reference.xcom_m, reference.xcom_m)
+    return target
+
+
+def _fill_verdict(target: Any, step: RecoveryStep) -> Any:
+    target.recovery.found, target.recovery.foot = True, step.foot
+    _fill_point(target.recovery.landing_m, step.landing_m)
+    _fill_point(target.xcom_deviation_m, step.xcom_deviation_m)
+    return target
+
+
+def _fill_point(target: Any, point: complex) -> None:
+    target.x, target.y = point.real, point.imag

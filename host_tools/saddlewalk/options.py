@@ -45,10 +45,11 @@ def whole_number_in(low: int, high: int) -> Callable[[str], int]:
 
 
 MUJOCO, WINTER = "mujoco", "winter"
+TORQUES, JOINTS = "torques", "joints"
 
 
 def add_plant_options(parser: argparse.ArgumentParser, default: str = "pendulum") -> None:
-    """--plant and --body, for chosen_plant()."""
+    """--plant, --body and --drive, for chosen_plant()."""
     parser.add_argument(
         "--plant",
         choices=("pendulum", MUJOCO),
@@ -60,6 +61,13 @@ def add_plant_options(parser: argparse.ArgumentParser, default: str = "pendulum"
         "--body",
         choices=(WINTER, "dm_control"),
         help=f"of --plant mujoco: average proportions, or dm_control's humanoid (default {WINTER})",
+    )
+    parser.add_argument(
+        "--drive",
+        choices=(TORQUES, JOINTS),
+        help=f"of --plant mujoco: {TORQUES} of a quadratic programme that knows the body's "
+        f"state, or {JOINTS}: firmware/joints, from sensors to drives, docs/joints.md "
+        f"(default {TORQUES})",
     )
 
 

@@ -19,6 +19,7 @@ static void print_sizes(void)
     printf("size output %u\n", (unsigned)sizeof(saddle_output_t));
     printf("size receiver %u\n", (unsigned)sizeof(saddle_wire_receiver_t));
     printf("size estimator %u\n", (unsigned)sizeof(saddle_estimator_t));
+    printf("size joint_walk %u\n", (unsigned)sizeof(saddle_joint_walk_t));
 }
 
 static void move_joints(bool absurd)

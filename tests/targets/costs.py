@@ -26,6 +26,7 @@ WIRE = "accept decode_command decode_measured encode_output".split()
 JOINTS = "legs_default legs_check inverse inverse_of_com forward".split()
 JOINTS += "estimator_default estimator_init estimator_update".split()
 JOINTS += "drive_default drive_check joint_commands".split()
+JOINTS += "joint_walk_default joint_walk_check joint_walk_init joint_walk_update".split()
 # Function -> what its calls are counted as. The order is count_calls' numbering.
 COUNTED = {
     "saddle_init": "init",
@@ -37,6 +38,7 @@ COUNTED = {
     "saddle_wire_encode_output": "encode",
     "saddle_inverse_of_com": "inverse",
     "saddle_estimator_update": "estimate",
+    "saddle_joint_walk_update": "intent",
     "saddle_joint_commands": "command",
 }
 MODES = ["standing", "starting", "walking", "stopping"]
@@ -175,6 +177,7 @@ def measure_level(tools: Tools, level: str) -> tuple[Costs, dict[str, list[float
         "encode_max": max(counts["encode"]),
         "inverse_max": max(counts["inverse"]),
         "estimate_max": max(counts["estimate"]),
+        "intent_max": max(counts["intent"]),
         "command_max": max(counts["command"]),
         "undefined_core": undefined(tools, "core", level),
         "undefined_wire": undefined(tools, "wire", level),
@@ -246,6 +249,7 @@ ROWS = [
     ("bytes", "output", "output"),
     ("bytes", "receiver", "receiver of the wire"),
     ("bytes", "estimator", "estimator of the joints"),
+    ("bytes", "joint_walk", "walking layer of the joints"),
     ("O2", "stack_tick", "stack of a tick, -O2, bytes"),
     ("Os", "stack_tick", "stack of a tick, -Os"),
     ("O2", "stack_init", "stack of init, -O2"),
@@ -265,6 +269,7 @@ ROWS = [
     ("O2", "encode_max", "wire: encode the output, -O2, maximum"),
     ("O2", "inverse_max", "joints under a CoM, -O2, maximum"),
     ("O2", "estimate_max", "update of the estimator, -O2, maximum"),
+    ("O2", "intent_max", "walking layer of the joints, -O2, maximum"),
     ("O2", "command_max", "commands of all joints, -O2, maximum"),
     ("O2", "undefined_core", "external symbols of the core, -O2"),
     ("O2", "undefined_wire", "external symbols of the wire, -O2"),

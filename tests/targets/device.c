@@ -37,6 +37,8 @@ void device_begin(device_t *device, bool absurd)
     device->trunk.axes.x.x = device->trunk.axes.y.y = device->trunk.axes.z.z = 1.0f;
     const saddle_estimator_config_t config = saddle_estimator_default();
     device->drive = saddle_drive_default();
+    const saddle_joint_walk_config_t walk = saddle_joint_walk_default();
+    (void)saddle_joint_walk_init(&device->walk, &device->legs, &walk);
     (void)saddle_estimator_init(&device->estimator, &device->legs, &config);
 }
 
@@ -88,21 +90,48 @@ static void spoil(device_t *device, void *object, size_t size)
     }
 }
 
-/* The joints as they are, and a CoP near the foot that stands. */
-static void intend(device_t *device)
+/* Small steps in the same rhythm, with a CoP near the foot that stands. */
+static void plan_steps(device_t *device)
 {
-    saddle_intent_t *intent = &device->intent;
+    saddle_plan_t *plan = &device->plan;
     const uint32_t ms = device->updates % (2u * STEP_MS);
     const unsigned swing = ms < STEP_MS ? SADDLE_RIGHT : SADDLE_LEFT;
-    intent->role[swing] = ms % STEP_MS < STEP_MS / 3u ? SADDLE_LEG_TRAILS : SADDLE_LEG_SWINGS;
-    intent->role[1u - swing] = SADDLE_LEG_STANDS;
-    intent->leading = (uint8_t)(1u - swing);
-    intent->trailing_share_max = random_in(&device->random, 0.0f, 1.0f);
-    intent->cop_m.x = random_in(&device->random, -0.05f, 0.05f);
-    intent->xcom_m.x = random_in(&device->random, -0.05f, 0.05f);
-    intent->com_height_m = random_in(&device->random, 0.9f, 1.0f);
-    intent->joints = device->joints;
-    intent->acceleration_rad_s2[swing][SADDLE_KNEE] = random_in(&device->random, -50.0f, 50.0f);
+    const float s = (float)(ms % STEP_MS) / (float)STEP_MS;
+    plan->valid = true;
+    plan->mode = SADDLE_MODE_WALKING;
+    plan->support = (uint8_t)(1u - swing);
+    plan->speed_m_s = 0.1f;
+    plan->step_length_m = 0.06f;
+    plan->com_m.z = random_in(&device->random, 0.85f, 0.95f);
+    plan->foot_m[1u - swing].y = swing == SADDLE_RIGHT ? 0.1f : -0.1f;
+    plan->foot_m[swing].x = -0.06f + 0.12f * s;
+    plan->foot_m[swing].y = -plan->foot_m[1u - swing].y;
+    plan->foot_m[swing].z = 0.3f * s * (1.0f - s);
+    plan->foot_pitch_rad[swing] = 0.5f * (1.0f - s);
+    plan->foot_pitch_rad[1u - swing] = 0.0f;
+    plan->swing_velocity_m_s.x = 0.2f;
+    plan->time_to_toe_off_s = (1.0f - s) * 0.001f * (float)STEP_MS;
+    plan->time_to_via_point_s = plan->time_to_toe_off_s;
+    plan->landing_m.x = device->updates / STEP_MS % 4u == 3u ? 0.0f : 0.06f;
+    plan->landing_m.y = plan->foot_m[swing].y;
+    plan->reference.cop_m.x = random_in(&device->random, -0.05f, 0.05f);
+    plan->reference.xcom_m.x = random_in(&device->random, -0.05f, 0.05f);
+}
+
+static void intend(device_t *device)
+{
+    plan_steps(device);
+    saddle_plan_t plan = device->plan;
+    spoil(device, &plan.speed_m_s,
+          sizeof plan - offsetof(saddle_plan_t, speed_m_s)); /* from there on floats */
+    saddle_verdict_t verdict;
+    memset(&verdict, 0, sizeof verdict);
+    verdict.recovery.found = device->updates / STEP_MS % 3u == 0u;
+    verdict.recovery.foot = (uint8_t)(1u - device->plan.support);
+    verdict.recovery.landing_m.x = random_in(&device->random, -0.5f, 0.5f);
+    verdict.xcom_deviation_m.x = random_in(&device->random, -0.2f, 0.2f);
+    const saddle_joint_walk_input_t input = {device->sensors.time_us, &plan, &verdict};
+    (void)saddle_joint_walk_update(&device->walk, &input, &device->estimate, &device->intent);
 }
 
 void device_update(device_t *device)

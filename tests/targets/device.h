@@ -3,7 +3,7 @@
 #ifndef SADDLEWALK_DEVICE_H
 #define SADDLEWALK_DEVICE_H
 
-#include <saddlewalk/joint_command.h>
+#include <saddlewalk/joint_walk.h>
 
 typedef struct {
     bool absurd; /**< any bits for some of the floats */
@@ -19,6 +19,8 @@ typedef struct {
     saddle_sensors_t sensors;
     saddle_estimate_t estimate;
     saddle_drive_config_t drive;
+    saddle_plan_t plan;
+    saddle_joint_walk_t walk;
     saddle_intent_t intent;
     saddle_joint_commands_t commands;
 } device_t;
@@ -26,7 +28,8 @@ typedef struct {
 void device_begin(device_t *device, bool absurd);
 
 /** One millisecond: somebody steps in place; joints by the inverse, the body by the forward kinematics,
- *  what the sensors of that body give, the estimate, and the joints' commands. */
+ *  what the sensors of that body give, the estimate, the intent of a plan in the same rhythm, and the
+ *  joints' commands. */
 void device_update(device_t *device);
 
 #endif

@@ -4,6 +4,7 @@ import argparse
 import math
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from saddlewalk.config import add_body_options, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.json_text import json_text
 from saddlewalk.options import (
+    JOINTS,
     MUJOCO,
     WINTER,
     add_campaign_options,
@@ -79,8 +81,21 @@ def add_parser(subparsers: Any) -> None:
             type=list_of(number_in(0, 200, "ms")),
             default=(0.0,),
             metavar="MS,...",
-            help=f"delays of the {what}s, with --plant {MUJOCO} (default 0)",
+            help=f"delays of the {what}s, with --plant {MUJOCO} (default 0)"
+            + (f"; of the joint commands with --drive {JOINTS}" if what == "torque" else ""),
         )
+    parser.add_argument(
+        "--mass-error",
+        type=number_in(-20, 20, "%"),
+        metavar="%",
+        help=f"with --drive {JOINTS}: it takes the body for so much heavier than it is",
+    )
+    parser.add_argument(
+        "--leg-error",
+        type=number_in(-50, 50, "mm"),
+        metavar="MM",
+        help=f"with --drive {JOINTS}: it takes the legs for so much longer than they are",
+    )
     add_plant_options(parser, default=MUJOCO)
     add_campaign_options(parser)
     add_output(
@@ -99,12 +114,17 @@ def run(args: argparse.Namespace) -> int:
     """1: a walk ended in a fall, or not standing."""
     from rich.console import Console
 
-    from saddlewalk.evaluation.endurance import endure, figures, grouped
+    from saddlewalk.evaluation.endurance import endure, figures, grouped, peaks_of
     from saddlewalk.physics.plants import chosen_plant
     from saddlewalk.workers import identity
 
     plant = chosen_plant(args)
     _check(args, plant)
+    plant = replace(
+        plant,
+        mass_error=(args.mass_error or 0.0) / 100,
+        leg_error_m=(args.leg_error or 0.0) / 1000,
+    )
     config = load_config(args, body=plant.fields)
     courses = _courses(args, config)
     with progress_bar("walks", len(courses)) as progress:
@@ -113,6 +133,8 @@ def run(args: argparse.Namespace) -> int:
     console.print(f"saddlewalk {identity()}")
     groups = list(grouped(outcomes))
     console.print(_table(groups, f"{plant.body or 'point mass'}, seed {args.seed}"))
+    if peaks := peaks_of(outcomes):
+        console.print(_peaks_table(peaks))
     total = figures(outcomes)
     console.print(
         f"{total['walks']} walks, {total['distance_m']:.0f} m: {total['falls']} falls, "
@@ -133,6 +155,11 @@ def _check(args: argparse.Namespace, plant: "PlantChoice") -> None:
     delayed = next((what for what in ("sensor", "torque") if any(_delays(args, what))), None)
     if delayed and not plant.is_mujoco:
         raise UserError(f"--{delayed}-delays: only with --plant {MUJOCO}")
+    for option in ("mass_error", "leg_error"):
+        if getattr(args, option) is not None and not plant.drives_joints:
+            raise UserError(f"--{option.replace('_', '-')}: only with --drive {JOINTS}")
+    if any(_delays(args, "sensor")) and plant.drives_joints:
+        raise UserError(f"--sensor-delays: not with --drive {JOINTS}, which has its own sensors")
 
 
 def _delays(args: argparse.Namespace, what: str) -> list[float]:
@@ -181,6 +208,17 @@ def _table(groups: list[dict[str, float]], title: str) -> Any:
         table.add_column(name, justify="right")
     for row in groups:
         table.add_row(*(cell(row) for cell in COLUMNS.values()))
+    return table
+
+
+def _peaks_table(peaks: dict[str, tuple[float, ...]]) -> Any:
+    from rich.table import Table
+
+    table = Table(title="greatest, of the walks that stayed up", title_justify="left")
+    for name in ("joint", "N m", "W", "rad/s"):
+        table.add_column(name, justify="right")
+    for joint, (torque_nm, power_w, speed_rad_s) in peaks.items():
+        table.add_row(joint, f"{torque_nm:.0f}", f"{power_w:.0f}", f"{speed_rad_s:.1f}")
     return table
 
 

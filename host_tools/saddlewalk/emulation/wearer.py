@@ -258,6 +258,10 @@ class Wearer:
         """Of the controller's programmes, without an optimum: a pendulum needs none."""
         return 0.0
 
+    def peaks(self) -> dict[str, tuple[float, float, float]]:
+        """Greatest torque, power and speed of each joint so far: a pendulum has none."""
+        return {}
+
     @property
     def xcom_m(self) -> complex:
         return self.com_m + self.velocity_m_s / self.body.natural_frequency_rad_s

@@ -61,15 +61,22 @@ class Outcome:
     xcom_sd_y_m: float
     ticks: dict[str, int]  # by level, from start to stop
     unsolved_share: float  # of the quadratic programmes
+    peaks: dict[str, tuple[float, float, float]]  # joint -> N m, W, rad/s; of both legs
 
     @property
     def fell(self) -> bool:
         return math.isfinite(self.fell_at_s)
 
     def row(self) -> dict[str, Cell]:
-        own = {name: value for name, value in asdict(self).items() if name != "ticks"}
+        own = {k: value for k, value in asdict(self).items() if k not in ("ticks", "peaks")}
         course = own.pop("course")
-        return {**{f"asked_{name}": value for name, value in course.items()}, **own, **self.ticks}
+        asked = {f"asked_{name}": value for name, value in course.items()}
+        peaks = {
+            f"{joint}_{unit}": peak
+            for joint, each in self.peaks.items()
+            for unit, peak in zip(("nm", "w", "rad_s"), each, strict=True)
+        }
+        return {**asked, **own, **self.ticks, **peaks}
 
 
 def over_distance(
@@ -146,6 +153,7 @@ def walked(course: Course, plant: PlantChoice, config: Any) -> Outcome:
         xcom_sd_y_m=float(deviation[1]),
         ticks={level: levels[level] for level in LEVELS},
         unsolved_share=wearer.unsolved_share,
+        peaks=wearer.peaks(),
     )
 
 
@@ -163,6 +171,17 @@ def grouped(outcomes: Sequence[Outcome]) -> Iterator[dict[str, float]]:
             "torque_delay_s": asked.torque_delay_s,
             **figures(group),
         }
+
+
+def peaks_of(outcomes: Sequence[Outcome]) -> dict[str, tuple[float, ...]]:
+    """Of each joint, the greatest torque (N m), power (W) and speed (rad/s) of walks without
+    a fall; nothing of a point mass.
+    """
+    upright = [outcome.peaks for outcome in outcomes if not outcome.fell]
+    return {
+        joint: tuple(np.max([peaks[joint] for peaks in upright], axis=0).tolist())
+        for joint in (upright[0] if upright else ())
+    }
 
 
 def figures(outcomes: Sequence[Outcome]) -> dict[str, float]:

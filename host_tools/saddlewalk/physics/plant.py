@@ -6,7 +6,7 @@ from collections import deque
 import mujoco
 import numpy as np
 
-from saddlewalk.contract import LEFT, RIGHT
+from saddlewalk.contract import LEFT, RIGHT, SIDES
 from saddlewalk.physics.body import TIMESTEP_S, Body
 
 POSE_ITERATIONS, POSE_STEP_MAX, POSE_TOLERANCE = 200, 0.2, 1e-4
@@ -21,6 +21,8 @@ class Plant:
         self.body, self.model = body, body.model
         self.data = mujoco.MjData(self.model)
         self.loads_n = [0.0, 0.0]
+        # Greatest torque (N m), power (W) and speed (rad/s) of each motor so far.
+        self.peaks = np.zeros((3, self.model.nu))
         steps = round(torque_delay_s / TIMESTEP_S)
         self._torques = deque([np.zeros(self.model.nu)] * (steps + 1), maxlen=steps + 1)
         self._feet = [self.model.body(leg.foot).id for leg in body.legs]
@@ -101,6 +103,9 @@ class Plant:
         data = self.data
         self._torques.append(torques)
         data.ctrl[:] = self._torques[0]
+        rates = data.qvel[-self.model.nu :]
+        done = np.abs((data.ctrl, data.ctrl * rates, rates))
+        self.peaks = np.maximum(self.peaks, done)
         lever_m = self.com_m - data.xipos[self._pelvis]
         data.xfrc_applied[self._pelvis] = (
             *(push_n.real, push_n.imag, 0.0),
@@ -113,6 +118,15 @@ class Plant:
         mujoco.mj_step1(self.model, data)
         if sensed:
             mujoco.mj_subtreeVel(self.model, data)
+
+    def peaks_of_joints(self) -> dict[str, tuple[float, float, float]]:
+        """By the joint's name without its side: the greatest torque, power and speed of both."""
+        peaks: dict[str, np.ndarray] = {}
+        for motor, of_motor in enumerate(self.peaks.T):
+            side, _, name = self.model.actuator(motor).name.partition("_")
+            joint = name if side in SIDES else self.model.actuator(motor).name
+            peaks[joint] = np.maximum(peaks.get(joint, of_motor), of_motor)
+        return {joint: tuple(found.tolist()) for joint, found in peaks.items()}
 
     def _weigh(self) -> None:
         """Load of each foot, from the contacts of the step that was just made."""

@@ -10,17 +10,20 @@ from typing import Any
 from saddlewalk.emulation.wearer import Body, Noise, Push, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.lockstep_host import LockstepHost
-from saddlewalk.options import MUJOCO, WINTER
+from saddlewalk.options import JOINTS, MUJOCO, WINTER
 from saddlewalk.paths import install_command
 
 
 @dataclass(frozen=True)
 class PlantChoice:
-    """The point mass, or one of physics.bodies.BODIES in MuJoCo. Delays are those of MuJoCo's."""
+    """The point mass, or one of physics.bodies.BODIES in MuJoCo. What is below is MuJoCo's."""
 
     body: str | None = None  # None: the point mass
+    drives_joints: bool = False  # by firmware/joints, see physics.joint_drive
     sensor_delay_s: float = 0.0
-    torque_delay_s: float = 0.0
+    torque_delay_s: float = 0.0  # of the joint commands where it drives joints
+    mass_error: float = 0.0  # by which share firmware/joints believes the body heavier,
+    leg_error_m: float = 0.0  # and its legs longer
 
     @property
     def is_mujoco(self) -> bool:
@@ -33,6 +36,10 @@ class PlantChoice:
             return MappingProxyType({})
         from saddlewalk.physics.bodies import BODIES
 
+        if self.drives_joints:
+            from saddlewalk.physics.joint_drive import FIELDS
+
+            return FIELDS
         return BODIES[self.body].fields()
 
     def joint_core(self, config: Any) -> LockstepHost | None:
@@ -54,6 +61,13 @@ class PlantChoice:
         from saddlewalk.physics.plant import Plant
         from saddlewalk.physics.wearer import PhysicalWearer
 
+        if self.drives_joints:
+            from saddlewalk.physics.joint_drive import BodyErrors, JointWearer
+
+            plant = Plant(BODIES[self.body].make(config))
+            behaviour["command_delay_s"] = self.torque_delay_s
+            behaviour["wrong"] = BodyErrors(self.mass_error, self.leg_error_m)
+            return JointWearer(plant, config, noise, pushes, seed, **behaviour)
         plant = Plant(BODIES[self.body].make(config), self.torque_delay_s)
         behaviour["sensor_delay_s"] = self.sensor_delay_s
         return PhysicalWearer(plant, config, noise, pushes, seed, **behaviour)
@@ -63,15 +77,19 @@ POINT_MASS = PlantChoice()
 
 
 def chosen_plant(args: argparse.Namespace) -> PlantChoice:
-    """The choice of --plant and --body. Raises UserError if it is not possible."""
+    """The choice of --plant, --body and --drive. Raises UserError if it is not possible."""
     if args.plant != MUJOCO:
+        if args.drive is not None:
+            raise UserError(f"--drive {args.drive}: only with --plant {MUJOCO}")
         if args.body is not None:
             raise UserError(f"--body {args.body}: only with --plant {MUJOCO}")
         return POINT_MASS
     for package in ("mujoco", "piqp"):
         if importlib.util.find_spec(package) is None:
             raise UserError(f"--plant {MUJOCO} needs {package}: {install_command('physics')}")
-    choice = PlantChoice(args.body or WINTER)
+    choice = PlantChoice(args.body or WINTER, args.drive == JOINTS)
+    if choice.drives_joints and choice.body != WINTER:
+        raise UserError(f"--drive {JOINTS}: only with the body {WINTER}, whose segments it knows")
     if choice.body != WINTER and (args.height, args.mass) != (None, None):
         option = "--mass" if args.height is None else "--height"
         raise UserError(f"{option}: the body {choice.body} has its own, leave it out")

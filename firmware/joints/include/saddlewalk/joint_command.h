@@ -35,6 +35,8 @@ typedef struct {
     float heading_damping;
     float height_stiffness_1_s2; /**< of the CoM, [J17]; 0: the reference angles alone hold it */
     float height_damping_1_s;
+    float edge_inset_m;     /**< the ankle keeps the CoP so far from heel and toe, [J20] */
+    float edge_across_m;    /**< and so near the middle of the sole to the side */
     float full_load_share;  /**< of the weight: from there a leg has its stance gains, [J20] */
     float swing_roll_kg_m2; /**< inertia of a leg about its hip, [J19] */
     float swing_pitch_kg_m2;
@@ -78,7 +80,8 @@ typedef struct {
     float load_share[2]; /**< of the ground force */
 } saddle_joint_commands_t;
 
-/** Gains of the body of a person on whom they were found, 2026-11; torques of human joints. */
+/** Gains that walk with commands up to 10 ms late, found on a simulated body, 2026-11 and -12; torques
+ *  of human joints. */
 saddle_drive_config_t saddle_drive_default(void);
 
 /** Name of the first field that is out of its range, or NULL. */

@@ -15,10 +15,6 @@
 /* A foot that carries less has ankles that may still do this much. */
 #define LOAD_MIN_N 50.0f
 
-/* How near the edge of the sole the ankle may bring the CoP, and half of a sole's width. */
-#define EDGE_INSET_M 0.015f
-#define SOLE_HALF_WIDTH_M 0.045f
-
 /* One leg on its way to its commands. */
 typedef struct {
     unsigned side;
@@ -98,7 +94,7 @@ static void limit_torques(const saddle_legs_t *legs, const saddle_drive_config_t
                           float load_n, bool on_sole, saddle_joint_command_t *command)
 {
     const float carried_n = saddle_larger(load_n, LOAD_MIN_N);
-    const float half_m = 0.5f * legs->foot_length_m - EDGE_INSET_M;
+    const float half_m = saddle_larger(0.5f * legs->foot_length_m - config->edge_inset_m, 0.0f);
     for (unsigned joint = 0; joint < SADDLE_LEG_JOINTS; joint++) {
         const float most_nm = config->joint[joint].torque_max_nm;
         command[joint].torque_min_nm = -most_nm;
@@ -109,7 +105,7 @@ static void limit_torques(const saddle_legs_t *legs, const saddle_drive_config_t
             command[joint].torque_min_nm = saddle_clamp(-heel_m * carried_n, -most_nm, most_nm);
             command[joint].torque_max_nm = saddle_clamp(toe_m * carried_n, -most_nm, most_nm);
         } else if (on_sole && joint == SADDLE_ANKLE_ROLL) {
-            const float edge_nm = saddle_smaller(SOLE_HALF_WIDTH_M * carried_n, most_nm);
+            const float edge_nm = saddle_smaller(config->edge_across_m * carried_n, most_nm);
             command[joint].torque_min_nm = -edge_nm;
             command[joint].torque_max_nm = edge_nm;
         }

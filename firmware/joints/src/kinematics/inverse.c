@@ -1,3 +1,5 @@
+#include "kinematics/inverse.h"
+
 #include "kinematics/chain.h"
 #include "kinematics/legs.h"
 #include "math/bytes.h"
@@ -211,25 +213,40 @@ static bool usable_foot(const saddle_foot_t *foot)
            saddle_in_range(foot->pitch_rad, -SADDLE_TWO_PI, SADDLE_TWO_PI);
 }
 
-saddle_reach_t saddle_inverse(const saddle_legs_t *legs, const saddle_trunk_t *trunk,
-                              const saddle_foot_t foot[2], saddle_joints_t *joints)
+saddle_reach_t saddle_inverse_leg(const saddle_legs_t *legs, const saddle_trunk_t *trunk,
+                                  const saddle_foot_t *foot, saddle_side_t side,
+                                  saddle_joints_t *joints)
 {
-    if (!usable_trunk(trunk) || !usable_foot(&foot[0]) || !usable_foot(&foot[1])) {
-        saddle_clear(joints, sizeof *joints);
+    if (!usable_trunk(trunk) || !usable_foot(foot)) {
         return REFUSED;
     }
     saddle_reach_t reach = {true, {false, false}, 0u, 0u};
-    for (unsigned side = 0; side < 2; side++) {
-        motion_t motion[SADDLE_LEG_JOINTS];
-        wanted_foot_t wanted;
-        want_foot(legs, &foot[side], &wanted);
-        const saddle_com_t hip = saddle_hip(legs, trunk, (saddle_side_t)side);
-        leg_line_t line = leg_line(&wanted, &hip);
-        reach.out_of_reach[side] = !fit_line(legs, &line);
-        leg_of(legs, trunk, &wanted, &line, motion);
-        hold_ranges(legs, (saddle_side_t)side, motion, joints, &reach);
-    }
+    motion_t motion[SADDLE_LEG_JOINTS];
+    wanted_foot_t wanted;
+    want_foot(legs, foot, &wanted);
+    const saddle_com_t hip = saddle_hip(legs, trunk, side);
+    leg_line_t line = leg_line(&wanted, &hip);
+    reach.out_of_reach[side] = !fit_line(legs, &line);
+    leg_of(legs, trunk, &wanted, &line, motion);
+    hold_ranges(legs, side, motion, joints, &reach);
     return reach;
+}
+
+saddle_reach_t saddle_inverse(const saddle_legs_t *legs, const saddle_trunk_t *trunk,
+                              const saddle_foot_t foot[2], saddle_joints_t *joints)
+{
+    const saddle_reach_t left =
+        saddle_inverse_leg(legs, trunk, &foot[SADDLE_LEFT], SADDLE_LEFT, joints);
+    const saddle_reach_t right =
+        saddle_inverse_leg(legs, trunk, &foot[SADDLE_RIGHT], SADDLE_RIGHT, joints);
+    if (!left.valid || !right.valid) {
+        saddle_clear(joints, sizeof *joints);
+        return REFUSED;
+    }
+    return (saddle_reach_t){true,
+                            {left.out_of_reach[SADDLE_LEFT], right.out_of_reach[SADDLE_RIGHT]},
+                            left.angle_limits | right.angle_limits,
+                            left.rate_limits | right.rate_limits};
 }
 
 /* [J8] */

@@ -22,6 +22,8 @@ static const saddle_config_field_t DRIVE_FIELDS[] = {
     FIELD(heading_damping, 0.0f, 1000.0f),
     FIELD(height_stiffness_1_s2, 0.0f, 500.0f),
     FIELD(height_damping_1_s, 0.0f, 100.0f),
+    FIELD(edge_inset_m, 0.0f, 0.1f),
+    FIELD(edge_across_m, 0.0f, 0.2f),
     FIELD(full_load_share, 0.05f, 1.0f),
     FIELD(swing_roll_kg_m2, 0.0f, 20.0f),
     FIELD(swing_pitch_kg_m2, 0.0f, 20.0f),
@@ -61,6 +63,8 @@ saddle_drive_config_t saddle_drive_default(void)
     config.heading_damping = 20.0f;
     config.height_stiffness_1_s2 = 0.0f;
     config.height_damping_1_s = 0.0f;
+    config.edge_inset_m = 0.015f;
+    config.edge_across_m = 0.045f;
     config.full_load_share = 0.4f;
     config.swing_roll_kg_m2 = 1.2f;
     config.swing_pitch_kg_m2 = 1.2f;
@@ -68,12 +72,12 @@ saddle_drive_config_t saddle_drive_default(void)
     config.max_age_s = 0.24f;
     config.fallback_damping = 1.0f;
     config.fallback_stiffness = 0.0f;
-    config.joint[SADDLE_HIP_YAW] = drive(gains(50.0f, 3.0f), gains(200.0f, 10.0f), 80.0f);
-    config.joint[SADDLE_HIP_ROLL] = drive(gains(300.0f, 9.0f), gains(1000.0f, 25.0f), 180.0f);
-    config.joint[SADDLE_HIP_PITCH] = drive(gains(250.0f, 13.0f), gains(800.0f, 35.0f), 220.0f);
-    config.joint[SADDLE_KNEE] = drive(gains(250.0f, 10.0f), gains(800.0f, 20.0f), 220.0f);
-    config.joint[SADDLE_ANKLE_PITCH] = drive(gains(40.0f, 3.5f), gains(150.0f, 3.0f), 180.0f);
-    config.joint[SADDLE_ANKLE_ROLL] = drive(gains(25.0f, 2.5f), gains(120.0f, 2.0f), 60.0f);
+    config.joint[SADDLE_HIP_YAW] = drive(gains(350.0f, 10.0f), gains(200.0f, 10.0f), 80.0f);
+    config.joint[SADDLE_HIP_ROLL] = drive(gains(850.0f, 50.0f), gains(1000.0f, 25.0f), 180.0f);
+    config.joint[SADDLE_HIP_PITCH] = drive(gains(1300.0f, 75.0f), gains(800.0f, 35.0f), 220.0f);
+    config.joint[SADDLE_KNEE] = drive(gains(375.0f, 25.0f), gains(800.0f, 20.0f), 220.0f);
+    config.joint[SADDLE_ANKLE_PITCH] = drive(gains(62.0f, 6.0f), gains(150.0f, 3.0f), 180.0f);
+    config.joint[SADDLE_ANKLE_ROLL] = drive(gains(75.0f, 0.75f), gains(120.0f, 2.0f), 60.0f);
     return config;
 }
 
