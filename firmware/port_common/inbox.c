@@ -1,17 +1,22 @@
 #include "inbox.h"
 
+#include "timing.h"
+
 #define MEASURED_SET                                                    \
     (1u << SADDLE_WIRE_MEASURED_COM | 1u << SADDLE_WIRE_MEASURED_LEFT | \
      1u << SADDLE_WIRE_MEASURED_RIGHT)
+
+/** Ticks and times of sets do not come so far apart. */
+#define GAP_US (SADDLE_TICK_US * 3u / 2u)
 
 void saddle_inbox_init(saddle_inbox_t *inbox, saddle_source_t chosen)
 {
     *inbox = (saddle_inbox_t){.chosen = chosen, .authority = chosen};
 }
 
-static void note_arrival(saddle_inbox_t *inbox, saddle_wire_message_t message, uint64_t time_us)
+static void note_birth(saddle_inbox_t *inbox, saddle_wire_message_t message, uint64_t time_us)
 {
-    inbox->received_us[message] = time_us;
+    inbox->born_us[message] = time_us;
     inbox->came |= 1u << message;
 }
 
@@ -26,16 +31,52 @@ void saddle_inbox_take_command(saddle_inbox_t *inbox, saddle_source_t source,
         inbox->authority = source;
         inbox->input.command = *command;
         ++inbox->commands_applied;
-        note_arrival(inbox, SADDLE_WIRE_COMMAND, time_us);
+        note_birth(inbox, SADDLE_WIRE_COMMAND, time_us);
     }
+}
+
+static bool is_gap(uint64_t from_us, uint64_t to_us)
+{
+    return to_us > from_us && to_us - from_us > GAP_US;
+}
+
+/** Without a tick and without a time our own clock jumped: the frames of a process that stood wait for
+ *  it, with the times of their reception. */
+static void take_time(saddle_inbox_t *inbox, const uint8_t *data, uint64_t time_us)
+{
+    if (is_gap(inbox->input.time_us, time_us) && is_gap(inbox->clock.heard_us, time_us)) {
+        saddle_sender_clock_forget(&inbox->clock);
+    }
+    saddle_sender_clock_take(&inbox->clock, saddle_wire_set_number(data),
+                             saddle_wire_decode_time(data), time_us);
+}
+
+/** From when the age of what came at time_us counts. False: it is of no use. */
+static bool is_newer(saddle_inbox_t *inbox, saddle_wire_message_t message, const uint8_t *data,
+                     uint64_t time_us, uint64_t *born_us)
+{
+    *born_us = time_us;
+    inbox->sender_clock = !inbox->lockstep && saddle_sender_clock_runs(&inbox->clock, time_us);
+    if (!inbox->sender_clock) {
+        return true;
+    }
+    const bool known =
+        saddle_sender_clock_sampled(&inbox->clock, saddle_wire_set_number(data), time_us, born_us);
+    const uint64_t held_us = inbox->born_us[message];
+    return known && (*born_us >= held_us || held_us > time_us);
 }
 
 static void take_measured(saddle_inbox_t *inbox, saddle_wire_message_t message, const uint8_t *data,
                           uint64_t time_us)
 {
     const uint8_t counter = saddle_wire_counter(data);
+    uint64_t born_us;
+    if (!is_newer(inbox, message, data, time_us, &born_us)) {
+        ++inbox->frames_late;
+        return;
+    }
     saddle_wire_decode_measured(message, data, &inbox->input.measurement);
-    note_arrival(inbox, message, time_us);
+    note_birth(inbox, message, born_us);
     if (counter != inbox->set_counter) {
         inbox->set = 0;
         inbox->set_counter = counter;
@@ -53,6 +94,8 @@ void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *
         saddle_inbox_take_command(inbox, SADDLE_SOURCE_CAN, &command, time_us);
     } else if (message >= SADDLE_WIRE_MEASURED_COM && message <= SADDLE_WIRE_MEASURED_RIGHT) {
         take_measured(inbox, message, data, time_us);
+    } else if (message == SADDLE_WIRE_MEASURED_TIME) {
+        take_time(inbox, data, time_us);
     }
 }
 
@@ -66,8 +109,8 @@ static uint32_t age_us(const saddle_inbox_t *inbox, saddle_wire_message_t messag
     if ((inbox->came & 1u << message) == 0u) {
         return SADDLE_AGE_NEVER_US;
     }
-    const uint64_t received_us = inbox->received_us[message];
-    const uint64_t age = time_us > received_us ? time_us - received_us : 0;
+    const uint64_t born_us = inbox->born_us[message];
+    const uint64_t age = time_us > born_us ? time_us - born_us : 0;
     return age < SADDLE_AGE_NEVER_US ? (uint32_t)age : SADDLE_AGE_NEVER_US - 1u;
 }
 
@@ -92,7 +135,7 @@ void saddle_inbox_release(saddle_inbox_t *inbox)
 uint32_t saddle_inbox_rejected(const saddle_inbox_t *inbox)
 {
     const saddle_wire_receiver_t *receiver = &inbox->receiver;
-    return receiver->malformed + receiver->bad_crc + receiver->bad_version + receiver->bad_counter +
-           receiver->bad_code + inbox->commands_unusable + inbox->commands_ignored +
-           inbox->commands_foreign;
+    return inbox->frames_late + receiver->malformed + receiver->bad_crc + receiver->bad_version +
+           receiver->bad_counter + receiver->bad_code + inbox->commands_unusable +
+           inbox->commands_ignored + inbox->commands_foreign;
 }

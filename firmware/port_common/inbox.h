@@ -1,6 +1,9 @@
 /**
- * The firmware's inputs: the newest command and measurement, when each part was received, and
- * what was rejected and why. Knows no bus and reads no clock.
+ * The firmware's inputs: the newest command and measurement, how old each part is, and what was
+ * rejected and why. Knows no bus and reads no clock.
+ *
+ * A command's age counts from its reception, a measurement's from when it was sampled, if the sender
+ * gives that time in MEASURED_TIME; else from its reception too.
  *
  * One source of commands has authority at a time. The commands of the other are counted, not
  * applied, even when the first goes silent: the plan then stops the walk.
@@ -8,6 +11,7 @@
 #ifndef SADDLEWALK_PORT_INBOX_H
 #define SADDLEWALK_PORT_INBOX_H
 
+#include "sender_clock.h"
 #include <saddlewalk/saddlewalk.h>
 #include <saddlewalk/wire.h>
 
@@ -23,9 +27,13 @@ typedef struct {
     saddle_source_t authority; /**< the source that commands now */
     saddle_input_t input;      /**< ages as of the last saddle_inbox_read() */
     saddle_wire_receiver_t receiver;
-    uint64_t received_us[SADDLE_WIRE_MESSAGE_COUNT];
-    uint32_t came; /**< bits of the messages received so far */
-    uint32_t set;  /**< bits of the messages with set_counter since the last read */
+    saddle_sender_clock_t clock;
+    bool lockstep;        /**< set by the port: what came is of age 0, whatever its time is */
+    bool sender_clock;    /**< the last measurement's age counts from when it was sampled */
+    uint32_t frames_late; /**< measured before what is held, or too long ago to know when */
+    uint64_t born_us[SADDLE_WIRE_MESSAGE_COUNT]; /**< from when its age counts */
+    uint32_t came;                               /**< bits of the messages received so far */
+    uint32_t set; /**< bits of the messages with set_counter since the last read */
     uint8_t set_counter;
     uint32_t commands_applied;
     uint32_t commands_unusable; /**< unknown mode, non-finite number, or not a command_t */

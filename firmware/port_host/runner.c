@@ -16,6 +16,10 @@
 /** The configuration is published with every so many ticks, about once a second. */
 #define CONFIG_TICKS 12
 
+/** Measurements without a time are announced after so many ticks, since the first may come before an
+ *  authenticated time can. */
+#define UNTIMED_TICKS 12
+
 /** The time of tick n in lockstep. */
 static uint64_t lockstep_us(const saddle_runner_t *runner)
 {
@@ -76,6 +80,20 @@ static void announce_first_bad_version(const saddle_wire_receiver_t *receiver, u
     if (before == 0 && receiver->bad_version != 0) {
         saddle_announce("COMMAND of wire version %u rejected: this firmware has version %u",
                         (unsigned)receiver->other_version, (unsigned)SADDLE_WIRE_VERSION);
+    }
+}
+
+/** Announced once. */
+static void announce_untimed(saddle_runner_t *runner)
+{
+    const saddle_inbox_t *inbox = &runner->inbox;
+    const bool measured = (inbox->came & 1u << SADDLE_WIRE_MEASURED_COM) != 0u;
+    if (measured && !inbox->lockstep && !inbox->sender_clock &&
+        ++runner->untimed_ticks == UNTIMED_TICKS) {
+        saddle_announce(
+            "the measurements come without MEASURED_TIME, as from senders of wire version "
+            "%u: their ages count from reception, and a delay is not seen",
+            SADDLE_WIRE_OLDEST_VERSION);
     }
 }
 
@@ -160,6 +178,7 @@ static void tick(saddle_runner_t *runner, uint64_t time_us)
 {
     saddle_output_t output;
     const saddle_input_t *input = saddle_inbox_read(&runner->inbox, time_us);
+    announce_untimed(runner);
     (void)saddle_tick(&runner->context, input, &output); /* the status is in the output */
     if (saddle_wire_session_expired(&runner->inbox.receiver, &output, runner->timing.ticks)) {
         open_session(runner);
@@ -252,11 +271,13 @@ void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, 
         .bus = bus, .lcm = lcm, .lcm_commands_fd = -1, .stop_fd = stop_fd, .lockstep = lockstep};
     (void)saddle_init(&runner->context, config);
     saddle_inbox_init(&runner->inbox, command_from);
+    runner->inbox.lockstep = lockstep;
 }
 
 void saddle_runner_require_auth(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH])
 {
     saddle_inbox_init(&runner->inbox, SADDLE_SOURCE_CAN);
+    runner->inbox.lockstep = runner->lockstep;
     saddle_wire_require_auth(&runner->inbox.receiver, key);
     open_session(runner);
 }

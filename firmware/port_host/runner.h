@@ -21,6 +21,7 @@ typedef struct {
     int lcm_commands_fd; /**< -1: LCM cannot command */
     int stop_fd;         /**< readable when the loop must end */
     bool lockstep;
+    uint32_t untimed_ticks; /**< with measurements of a sender without a clock */
     saddle_context_t context;
     saddle_inbox_t inbox;
     saddle_timing_t timing;

@@ -84,6 +84,7 @@ saddle_status_t saddle_controller_init(saddle_controller_t *controller,
 {
     *controller = (saddle_controller_t){.lockstep = lockstep};
     saddle_inbox_init(&controller->inbox, SADDLE_SOURCE_CAN);
+    controller->inbox.lockstep = lockstep;
     return saddle_init(&controller->context, config);
 }
 

@@ -28,6 +28,7 @@ class LockstepHost:
         self.inputs = 0  # frames
         self._receiver = ffi().new("saddle_wire_receiver_t *")
         self._input = ffi().new("saddle_input_t *")
+        self._measured = [getattr(library(), f"SADDLE_WIRE_{name}") for name in INPUTS[1:]]
         self._set: set[int] = set()
         self._set_counter = 0
         self._command_us: int | None = None  # the time of the tick after it
@@ -42,7 +43,7 @@ class LockstepHost:
         self.inputs += 1
         if message == lib.SADDLE_WIRE_COMMAND:
             self._take_command(data)
-        elif message != lib.SADDLE_WIRE_COMMAND_CODE:
+        elif message in self._measured:
             self._take_measured(message, data)
 
     def _take_command(self, data: bytes) -> None:

@@ -103,8 +103,13 @@ def _link(name: str, state: int, losses: int) -> str:
 
 
 def _other_version(status: Any) -> list[str]:
-    if not status.frames_bad_version:
+    if not status.other_version:
         return []
+    if not status.frames_bad_version:
+        return [
+            f"commands of wire version {status.other_version}, this firmware has "
+            f"{status.wire_version}"
+        ]
     return [
         f"wire version {status.other_version} rejected, this firmware has {status.wire_version}"
     ]

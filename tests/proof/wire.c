@@ -43,6 +43,9 @@ static void receive(saddle_wire_receiver_t *receiver, saddle_measurement_t *meas
     const saddle_wire_message_t message = saddle_wire_accept(receiver, any_uint32, data, length);
     if (message == SADDLE_WIRE_COMMAND) {
         saddle_wire_decode_command(data, &command);
+    } else if (message == SADDLE_WIRE_MEASURED_TIME) {
+        (void)saddle_wire_decode_time(data);
+        (void)saddle_wire_set_number(data);
     } else if (message != SADDLE_WIRE_NONE) {
         saddle_wire_decode_measured(message, data, measurement);
     }
@@ -53,13 +56,16 @@ static void send(const saddle_wire_receiver_t *receiver, const saddle_cmac_key_t
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_frame_t code;
     const saddle_output_t output = some_output();
-    const saddle_wire_health_t health = any_health;
+    saddle_wire_health_t health = any_health;
+    health.sender_clock = any_bool();
     const saddle_command_t command = any_command;
     const saddle_measurement_t measurement = some_measurement();
     saddle_wire_encode_output(&output, &health, any_uint8, frames);
     saddle_wire_encode_command(&command, any_uint8, &frames[0]);
     saddle_wire_encode_code(key, any_uint32, any_uint16, &frames[0], &code);
     saddle_wire_encode_measurement(&measurement, any_uint8, frames);
+    saddle_wire_encode_time(any_uint32, any_uint8, frames);
+    saddle_wire_authenticate_time(key, any_uint32, frames);
     saddle_wire_encode_session(receiver, any_uint8, frames);
     (void)saddle_wire_session_expired(receiver, &output, any_uint32);
 }

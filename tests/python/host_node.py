@@ -13,7 +13,7 @@ from saddlewalk import paths
 from saddlewalk.errors import UserError
 from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.lcmbus import open_lcm
-from saddlewalk.transport.wire import Receiver, Sender
+from saddlewalk.transport.wire import TIMES, Receiver, Sender
 
 WAIT_S = 5.0  # for what must come
 SILENCE_S = 0.1  # for what must not
@@ -66,6 +66,7 @@ class Host:
     def measure(self, measurement=STANDING) -> None:
         """The CoM's height flickers by 1 mm: sensors that never change are frozen."""
         self.flicker_m = 0.001 - self.flicker_m
+        self.send("MEASURED_TIME", TIME=time.monotonic_ns() // 1000 % TIMES, CODE=0)
         for name, values in measurement.items():
             if "HEIGHT" in values:
                 values = values | {"HEIGHT": values["HEIGHT"] + self.flicker_m}

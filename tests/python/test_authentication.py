@@ -129,6 +129,19 @@ def test_a_code_is_valid_once(codec):
     assert guarded.receiver.bad_code == 2
 
 
+def test_only_authenticated_times_are_accepted_and_only_once(codec):
+    guarded, sender = Guarded(codec), wire.Sender()
+    authenticator = speaking(guarded)
+    times = [authenticator.time_frames(sender, 80_000 * number)[0] for number in range(3)]
+    for frame in times:
+        guarded.accepts(frame)
+    assert (guarded.receiver.accepted, guarded.receiver.bad_code) == (3, 0)
+    guarded.accepts(times[2])
+    guarded.accepts(wire.changed(*authenticator.time_frames(sender, 240_000), TIME=250_000))
+    assert (guarded.receiver.accepted, guarded.receiver.bad_code) == (3, 2)
+    assert Authenticator(KEY).time_frames(sender, 320_000) == []  # heard of no session
+
+
 def test_another_key_is_rejected(codec):
     guarded = Guarded(codec, key=bytes(16))
     assert not guarded.accepts(*speaking(guarded).frames(wire.Sender(), **WALK))
@@ -156,7 +169,8 @@ def test_the_host_applies_commands_with_the_key_and_counts_others(key_file):
         host.send("COMMAND", **WALK)
         host.measure(STANDING)
         assert host.tick()["INPUTS"]["COMMAND_AGE"] == 80
-        assert "1 bad code" in host.stop()
+        # And the time of each set, of which none had a code.
+        assert "4 bad code" in host.stop()
 
 
 def test_a_silence_opens_a_new_session(key_file):

@@ -107,7 +107,7 @@ class TestBus:
                 assert len(tick) == MESSAGES_PER_TICK
                 assert {message["COUNTER"] for message in tick.values()} == {number % 16}
             assert host.tick_frames(SILENCE_S) == []
-            assert "50 ticks, 0 late, 0 missed; frames: 151 accepted, rejected 0 " in host.stop()
+            assert "50 ticks, 0 late, 0 missed; frames: 201 accepted, rejected 0 " in host.stop()
 
     def test_the_firmware_counts_foreign_frames(self, spec):
         with lockstep(spec=spec) as host:

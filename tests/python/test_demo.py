@@ -295,7 +295,7 @@ def test_firmware_that_starts_slowly_is_sent_each_measurement_once(ports):
         exoskeleton = Exoskeleton(bus, Wearer(), configuration({}), schedule_of([(0.0, 0.0)], 0.0))
         exoskeleton.run("lockstep", 0.8)
     assert exoskeleton.ticks == 10
-    assert exoskeleton.frames_sent == 10 * 4 + 1  # command and measurements; the last command
+    assert exoskeleton.frames_sent == 10 * 5 + 1  # command, time and measurements; the last command
 
 
 def test_emulate_without_firmware_reports_it(ports, capsys, monkeypatch):

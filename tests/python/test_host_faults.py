@@ -226,7 +226,7 @@ def flood(seconds: float) -> None:
         assert counters == [(first + 1 + i) % 16 for i in range(len(counters))]
         assert len(counters) == pytest.approx(lasted_s / TICK_S, abs=1.5)
         assert sent.sent > 0.9 * FLOOD_HZ * seconds
-        summary = host.stop()
+        summary = host.stop(announced=("the measurements come without MEASURED_TIME, ",))
         assert " 0 missed; " in summary
         came = [int(word) for word in summary.partition("frames: ")[2].split() if word.isdigit()]
         accepted, *rejected = came[:6]

@@ -134,6 +134,12 @@ SHOWN += [
 SHOWN += ["dropped 7 frames without room"]
 
 
+def test_commands_of_an_older_wire_version_are_mentioned():
+    older = status()
+    older.frames_bad_version = 0
+    assert "commands of wire version 3, this firmware has 5" in status_text.inputs(older)
+
+
 @pytest.mark.parametrize("text", SHOWN)
 def test_every_number_is_shown_drawn_or_as_a_line(text):
     assert text in drawn(heard())

@@ -53,7 +53,7 @@ PROCESS = {
         ("ACCEPTED", "MALFORMED", "BAD_CRC", "BAD_VERSION", "BAD_COUNTER"), 0
     ),
     "INPUTS": dict.fromkeys(
-        ("COMMAND_SOURCE", "COMMAND_AGE", "COM_AGE", "LEFT_AGE", "RIGHT_AGE"), 0
+        ("COMMAND_SOURCE", "SENDER_CLOCK", "COMMAND_AGE", "COM_AGE", "LEFT_AGE", "RIGHT_AGE"), 0
     ),
 }
 
@@ -71,11 +71,15 @@ class OfflineFirmware:
         self._ticks = 0
         self._lose = lose
         self.commands: list[dict[str, float]] = []
+        self.times_us: list[float] = []
 
     def send(self, frame: can.Message) -> None:
         name, signals = self._receiver.accept(frame)
         if name == "COMMAND":
             self.commands.append(signals)
+            return
+        if name == "MEASURED_TIME":
+            self.times_us.append(signals["TIME"])
             return
         self._got[name] = signals
         if len(self._got) == 3:

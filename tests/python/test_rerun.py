@@ -301,7 +301,7 @@ def test_a_can_log_with_another_body_differs(walk, capsys):
 
 def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
     frames = frames_of(walk)
-    log = can_log(tmp_path / "mid.log", frames[33 * 5 :])
+    log = can_log(tmp_path / "mid.log", frames[34 * 5 :])
     status, _, shown = rerun(log, capsys)
     assert (status, shown.count("\n")) == (2, 1) and "the log begins in mid-run" in shown
     answered = [i for i, frame in enumerate(frames) if frame.arbitration_id == 0x140]

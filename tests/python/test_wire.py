@@ -161,6 +161,7 @@ COUNTS = {
     },
     "INPUTS": {
         "COMMAND_SOURCE": ("command_source", 3, 1),
+        "SENDER_CLOCK": ("sender_clock", 1, 1),
         "COMMAND_AGE": ("input_age_us.0", 4095, 1000),
         "COM_AGE": ("input_age_us.1", 4095, 1000),
         "LEFT_AGE": ("input_age_us.2", 4095, 1000),
@@ -310,7 +311,8 @@ def random_health(rng: random.Random):
     for message, signals in COUNTS.items():
         expected[message] = {}
         for signal, (field, largest, unit) in signals.items():
-            value = rng.randrange(2 ** rng.randint(1, 32)) if largest != 3 else rng.randrange(4)
+            bits = {1: 1, 3: 2}.get(largest) or rng.randint(1, 32)
+            value = rng.randrange(2**bits)
             put(health, field, value)
             sent = value // unit
             expected[message][signal] = sent % 65536 if largest is None else min(sent, largest)
@@ -447,7 +449,7 @@ def test_arbitrary_bytes_are_checked_alike(codec):
         identifier = rng.choice((0x100, 0x110, 0x111, 0x112, 0x000, 0x7FF))
         data = bytearray(rng.randbytes(rng.choice((8, 8, 8, 8, 8, 8, 0, 7))))
         if len(data) == 8 and rng.random() < 0.7:
-            data[6] = rng.choice((wire.WIRE_VERSION, data[6]))
+            data[6] = rng.choice((wire.OLDEST_VERSION, wire.WIRE_VERSION, data[6]))
             data[0] = wire.frame_crc(identifier, data)
         frame = can.Message(arbitration_id=identifier, is_extended_id=False, data=data)
         in_c = codec.saddle_wire_accept(c, identifier, bytes(data), len(data))

@@ -116,6 +116,70 @@ static void test_a_set_is_of_one_instant_and_read_once(void)
     TEST_ASSERT_FALSE(saddle_inbox_set_complete(&inbox));
 }
 
+static void send_timed_set(uint8_t number, uint32_t sampled_us, uint64_t time_us)
+{
+    saddle_frame_t frame;
+    saddle_wire_encode_time(sampled_us, number, &frame);
+    saddle_inbox_take_frame(&inbox, frame.id, frame.data, sizeof frame.data, time_us);
+    send_set(number, 3, time_us);
+}
+
+/** Held back for 0.3 s in the numbers' second round, with ticks between. */
+static void test_late_data_are_old_data(void)
+{
+    for (uint8_t n = 0; n < 20; ++n) {
+        send_timed_set(n, 500u + n * 80000u, 100000u + n * 80000u);
+        (void)saddle_inbox_read(&inbox, 100002u + n * 80000u);
+    }
+    TEST_ASSERT_TRUE(inbox.sender_clock);
+    TEST_ASSERT_LESS_THAN_UINT32(20, inbox.input.measurement.foot[SADDLE_RIGHT].age_us);
+    const uint64_t now_us = 100000u + 20u * 80000u;
+    (void)saddle_inbox_read(&inbox, now_us + 240000u);
+    send_timed_set(20, 500u + 20u * 80000u, now_us + 300000u);
+    const saddle_measurement_t *measurement =
+        &saddle_inbox_read(&inbox, now_us + 320000u)->measurement;
+    TEST_ASSERT_UINT32_WITHIN(100, 320000, measurement->com.age_us);
+    TEST_ASSERT_UINT32_WITHIN(100, 320000, measurement->foot[SADDLE_LEFT].age_us);
+}
+
+static void test_what_was_measured_before_what_is_held_is_not_taken(void)
+{
+    send_timed_set(0, 0, 1000);
+    send_timed_set(1, 80000, 81000);
+    send_timed_set(2, 160000, 161000);
+    inbox.receiver.alive[SADDLE_WIRE_MEASURED_COM].seen = false;
+    const saddle_measurement_t old = {.com.height_m = 0.5f};
+    saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
+    saddle_wire_encode_measurement(&old, 1, frames);
+    saddle_inbox_take_frame(&inbox, frames[0].id, frames[0].data, 8, 162000);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, saddle_inbox_read(&inbox, 170000)->measurement.com.height_m);
+    TEST_ASSERT_EQUAL_UINT32(1, inbox.frames_late);
+    TEST_ASSERT_EQUAL_UINT32(1, saddle_inbox_rejected(&inbox));
+}
+
+/** Not while ticks come, nor while frames do, since a process that stood finds them in its queue. */
+static void test_a_jump_of_our_own_clock_is_no_delay(void)
+{
+    send_timed_set(0, 0, 1000);
+    (void)saddle_inbox_read(&inbox, 2000);
+    send_timed_set(1, 80000, 581000);
+    TEST_ASSERT_EQUAL_UINT32(0, saddle_inbox_read(&inbox, 581000)->measurement.com.age_us);
+    send_timed_set(2, 160000, 661000);
+    send_timed_set(3, 240000, 741000);
+    send_timed_set(4, 320000, 861000);
+    TEST_ASSERT_UINT32_WITHIN(100, 40000,
+                              saddle_inbox_read(&inbox, 861000)->measurement.com.age_us);
+}
+
+static void test_in_lockstep_every_age_is_0(void)
+{
+    inbox.lockstep = true;
+    send_timed_set(0, 0, 1000);
+    send_timed_set(1, 80000, 900000);
+    TEST_ASSERT_EQUAL_UINT32(0, saddle_inbox_read(&inbox, 900000)->measurement.com.age_us);
+    TEST_ASSERT_FALSE(inbox.sender_clock);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -126,5 +190,9 @@ int main(void)
     RUN_TEST(test_each_part_has_its_age);
     RUN_TEST(test_no_age_is_mistaken_for_never);
     RUN_TEST(test_a_set_is_of_one_instant_and_read_once);
+    RUN_TEST(test_late_data_are_old_data);
+    RUN_TEST(test_what_was_measured_before_what_is_held_is_not_taken);
+    RUN_TEST(test_a_jump_of_our_own_clock_is_no_delay);
+    RUN_TEST(test_in_lockstep_every_age_is_0);
     return UNITY_END();
 }

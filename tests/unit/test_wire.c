@@ -114,16 +114,45 @@ static void test_messages_that_the_firmware_does_not_receive_are_malformed(void)
     TEST_ASSERT_EQUAL_UINT32(0, receiver.accepted);
 }
 
-static void test_another_wire_version_is_rejected(void)
+static void reseal(saddle_frame_t *frame)
 {
-    saddle_frame_t frame = command_frame(0);
-    uint8_t covered[9] = {(uint8_t)frame.id, (uint8_t)(frame.id >> 8)};
-    frame.data[6] = SADDLE_WIRE_VERSION + 1;
-    memcpy(&covered[2], &frame.data[1], 7);
-    frame.data[0] = saddle_wire_crc(covered, sizeof covered);
-    TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_NONE, accept(&frame));
-    TEST_ASSERT_EQUAL_UINT32(1, receiver.bad_version);
-    TEST_ASSERT_EQUAL_UINT8(SADDLE_WIRE_VERSION + 1, receiver.other_version);
+    uint8_t covered[9] = {(uint8_t)frame->id, (uint8_t)(frame->id >> 8)};
+    memcpy(&covered[2], &frame->data[1], 7);
+    frame->data[0] = saddle_wire_crc(covered, sizeof covered);
+}
+
+static void expect_version(uint8_t version, saddle_wire_message_t message, uint32_t bad)
+{
+    saddle_frame_t frame = command_frame((uint8_t)(receiver.alive[0].last + 1u));
+    frame.data[6] = version;
+    reseal(&frame);
+    TEST_ASSERT_EQUAL_INT(message, accept(&frame));
+    TEST_ASSERT_EQUAL_UINT32(bad, receiver.bad_version);
+    TEST_ASSERT_EQUAL_UINT8(version, receiver.other_version);
+}
+
+static void test_other_wire_versions_but_the_older_ones_that_fit_are_rejected(void)
+{
+    expect_version(SADDLE_WIRE_VERSION + 1, SADDLE_WIRE_NONE, 1);
+    expect_version(SADDLE_WIRE_OLDEST_VERSION, SADDLE_WIRE_COMMAND, 1);
+    expect_version(SADDLE_WIRE_OLDEST_VERSION - 1, SADDLE_WIRE_NONE, 2);
+}
+
+/** Counter 5 in round 6 is set 101. */
+static void test_a_set_has_one_number_in_all_its_frames(void)
+{
+    const saddle_measurement_t measurement = {.foot = {{.contact = true}, {.contact = true}}};
+    saddle_frame_t frames[1u + SADDLE_WIRE_MEASURED_FRAMES];
+    saddle_wire_encode_time(0x12345678, 101, &frames[0]);
+    saddle_wire_encode_measurement(&measurement, 101, &frames[1]);
+    for (size_t i = 0; i < 1u + SADDLE_WIRE_MEASURED_FRAMES; ++i) {
+        TEST_ASSERT_EQUAL_UINT8(101, saddle_wire_set_number(frames[i].data));
+        TEST_ASSERT_EQUAL_UINT8(5, saddle_wire_counter(frames[i].data));
+    }
+    const uint8_t after_crc[7] = {0xC5, 0x78, 0x56, 0x34, 0x12, 0, 0};
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(after_crc, &frames[0].data[1], 7);
+    TEST_ASSERT_EQUAL_INT(SADDLE_WIRE_MEASURED_TIME, accept(&frames[0]));
+    TEST_ASSERT_EQUAL_HEX32(0x12345678, saddle_wire_decode_time(frames[0].data));
 }
 
 static void expect_counters(const char *counters, const char *accepted)
@@ -468,6 +497,39 @@ static void test_a_code_authenticates_one_command_once(void)
     TEST_ASSERT_EQUAL_UINT32(0, receiver.bad_counter);
 }
 
+static bool accepts_time(uint32_t session, uint32_t time_us, uint8_t flipped)
+{
+    saddle_cmac_key_t prepared;
+    saddle_frame_t frame;
+    saddle_cmac_prepare(&prepared, KEY);
+    saddle_wire_encode_time(time_us, (uint8_t)(time_us / 1000u), &frame);
+    saddle_wire_authenticate_time(&prepared, session, &frame);
+    frame.data[3] ^= flipped;
+    reseal(&frame);
+    return accept(&frame) == SADDLE_WIRE_MEASURED_TIME;
+}
+
+static void test_a_time_is_authenticated_by_its_own_code_and_rises_in_a_session(void)
+{
+    TEST_ASSERT_TRUE(accepts_time(9, 1000, 4)); /* no codes are required */
+    saddle_wire_require_auth(&receiver, KEY);
+    TEST_ASSERT_FALSE(accepts_time(0, 2000, 0));
+    saddle_wire_open_session(&receiver, 7);
+    TEST_ASSERT_TRUE(accepts_time(7, 3000, 0));
+    TEST_ASSERT_FALSE(accepts_time(7, 3000, 0)); /* a replay */
+    TEST_ASSERT_FALSE(accepts_time(7, 2000, 0));
+    TEST_ASSERT_FALSE(accepts_time(8, 4000, 0));
+    TEST_ASSERT_FALSE(accepts_time(7, 4000, 4));
+    TEST_ASSERT_EQUAL_UINT32(5, receiver.bad_code);
+    TEST_ASSERT_TRUE(accepts_time(7, 4000, 0));
+    saddle_wire_open_session(&receiver, 8);
+    TEST_ASSERT_TRUE(accepts_time(7, 5000, 0)); /* the sender has not heard of the session */
+    TEST_ASSERT_FALSE(accepts_time(7, 5000, 0));
+    /* Earlier, with a number that follows. */
+    TEST_ASSERT_TRUE(accepts_time(8, UINT32_MAX - 290u, 0));
+    TEST_ASSERT_FALSE(accepts_time(7, 6000, 0));
+}
+
 static void test_when_a_session_is_over(void)
 {
     const saddle_output_t commanded = {.status = SADDLE_OK};
@@ -498,7 +560,8 @@ int main(void)
     RUN_TEST(test_every_single_bit_error_is_rejected);
     RUN_TEST(test_frame_under_another_identifier_is_rejected);
     RUN_TEST(test_messages_that_the_firmware_does_not_receive_are_malformed);
-    RUN_TEST(test_another_wire_version_is_rejected);
+    RUN_TEST(test_other_wire_versions_but_the_older_ones_that_fit_are_rejected);
+    RUN_TEST(test_a_set_has_one_number_in_all_its_frames);
     RUN_TEST(test_counter_rule);
     RUN_TEST(test_messages_have_separate_counters);
     RUN_TEST(test_decoding_leaves_ages_and_other_parts);
@@ -514,6 +577,7 @@ int main(void)
     RUN_TEST(test_process_bytes);
     RUN_TEST(test_before_a_session_no_code_is_valid);
     RUN_TEST(test_a_code_authenticates_one_command_once);
+    RUN_TEST(test_a_time_is_authenticated_by_its_own_code_and_rises_in_a_session);
     RUN_TEST(test_when_a_session_is_over);
     return UNITY_END();
 }

@@ -6,6 +6,8 @@
 
 #define NOT_AVAILABLE INT16_MIN
 #define COUNTER_MASK 0x0Fu
+#define COUNTER_BITS 4u
+#define ROUND_SHIFT 5u /* in byte 1 */
 #define COUNTER_STEP_MAX 4u
 #define AGE_MAX_MS 4095u
 
@@ -146,6 +148,11 @@ uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH])
     return data[1] & COUNTER_MASK;
 }
 
+uint8_t saddle_wire_set_number(const uint8_t data[SADDLE_WIRE_LENGTH])
+{
+    return (uint8_t)((uint32_t)data[1] >> ROUND_SHIFT << COUNTER_BITS) | (data[1] & COUNTER_MASK);
+}
+
 static bool follows(uint8_t counter, uint8_t before)
 {
     const uint8_t step = (uint8_t)(counter - before) & COUNTER_MASK;
@@ -173,6 +180,7 @@ static saddle_wire_message_t message_of(uint32_t id)
     switch (id) {
     case MESSAGE_COMMAND: return SADDLE_WIRE_COMMAND;
     case MESSAGE_COMMAND_CODE: return SADDLE_WIRE_COMMAND_CODE;
+    case MESSAGE_MEASURED_TIME: return SADDLE_WIRE_MEASURED_TIME;
     case MESSAGE_MEASURED_COM: return SADDLE_WIRE_MEASURED_COM;
     case MESSAGE_MEASURED_LEFT: return SADDLE_WIRE_MEASURED_LEFT;
     case MESSAGE_MEASURED_RIGHT: return SADDLE_WIRE_MEASURED_RIGHT;
@@ -186,20 +194,24 @@ static bool speaks_our_version(saddle_wire_receiver_t *receiver, uint64_t comman
     if (version != SADDLE_WIRE_VERSION) {
         receiver->other_version = (uint8_t)version;
     }
-    return version == SADDLE_WIRE_VERSION;
+    return version >= SADDLE_WIRE_OLDEST_VERSION && version <= SADDLE_WIRE_VERSION;
 }
 
 /** One block for the cipher: the session, its freshness, and the frame with its identifier. */
 static uint32_t code_of(const saddle_cmac_key_t *key, uint32_t session, uint16_t freshness,
-                        const uint8_t *command)
+                        uint32_t id, const uint8_t *data)
 {
-    uint8_t bytes[SADDLE_CMAC_LENGTH] = {(uint8_t)session,         (uint8_t)(session >> 8),
-                                         (uint8_t)(session >> 16), (uint8_t)(session >> 24),
-                                         (uint8_t)freshness,       (uint8_t)(freshness >> 8),
-                                         (uint8_t)MESSAGE_COMMAND, (uint8_t)(MESSAGE_COMMAND >> 8)};
+    uint8_t bytes[SADDLE_CMAC_LENGTH] = {(uint8_t)session,
+                                         (uint8_t)(session >> 8),
+                                         (uint8_t)(session >> 16),
+                                         (uint8_t)(session >> 24),
+                                         (uint8_t)freshness,
+                                         (uint8_t)(freshness >> 8),
+                                         (uint8_t)id,
+                                         (uint8_t)(id >> 8)};
     uint8_t code[SADDLE_CMAC_LENGTH];
     for (size_t i = 0; i < SADDLE_WIRE_LENGTH; ++i) {
-        bytes[8u + i] = command[i];
+        bytes[8u + i] = data[i];
     }
     saddle_cmac(key, bytes, sizeof bytes, code);
     return (uint32_t)code[0] << 24 | (uint32_t)code[1] << 16 | (uint32_t)code[2] << 8 | code[3];
@@ -216,10 +228,41 @@ static bool is_authentic(saddle_wire_guard_t *guard, const uint8_t *command)
     const uint16_t freshness = (uint16_t)CODE_IN(COMMAND_CODE_FRESHNESS, code);
     if (!guard->opened || freshness <= guard->freshness ||
         CODE_IN(COMMAND_CODE_CODE, code) !=
-            code_of(&guard->key, guard->session, freshness, command)) {
+            code_of(&guard->key, guard->session, freshness, MESSAGE_COMMAND, command)) {
         return false;
     }
     guard->freshness = freshness;
+    return true;
+}
+
+/** The code of a MEASURED_TIME: over all of the frame but its CRC and the code itself. */
+static uint32_t code_of_time(const saddle_cmac_key_t *key, uint32_t session, const uint8_t *data)
+{
+    const uint8_t covered[SADDLE_WIRE_LENGTH] = {0,       data[1], data[2], data[3],
+                                                 data[4], data[5], 0,       0};
+    return code_of(key, session, 0, MESSAGE_MEASURED_TIME, covered) >> 16;
+}
+
+/** Its time is its freshness: within a session it rises. Until the sender has heard of a new session
+ *  its times are those of the session before. */
+static bool is_authentic_time(saddle_wire_guard_t *guard, const uint8_t *data)
+{
+    if (!guard->required || !guard->opened) {
+        return !guard->required;
+    }
+    const uint32_t time_us = saddle_wire_decode_time(data);
+    const uint32_t code = CODE_IN(MEASURED_TIME_CODE, bits_of(data));
+    const bool later = (int32_t)(time_us - guard->time_us) > 0;
+    if (code == code_of_time(&guard->key, guard->session, data)) {
+        if (guard->timed && !later) {
+            return false;
+        }
+        guard->timed = true;
+    } else if (guard->timed || !guard->timed_before || !later ||
+               code != code_of_time(&guard->key, guard->session_before, data)) {
+        return false;
+    }
+    guard->time_us = time_us;
     return true;
 }
 
@@ -243,7 +286,8 @@ static uint32_t *count_of(saddle_wire_receiver_t *receiver, saddle_wire_message_
     if (commands && !speaks_our_version(receiver, bits)) {
         return &receiver->bad_version;
     }
-    if (commands && !is_authentic(&receiver->guard, data)) {
+    if ((commands && !is_authentic(&receiver->guard, data)) ||
+        (message == SADDLE_WIRE_MEASURED_TIME && !is_authentic_time(&receiver->guard, data))) {
         return &receiver->bad_code;
     }
     if (!in_step(&receiver->alive[message], saddle_wire_counter(data))) {
@@ -277,6 +321,11 @@ void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_c
     command->mode = (uint8_t)CODE_IN(COMMAND_MODE, bits);
     command->speed_m_s = NUMBER_IN(COMMAND_SPEED, bits);
     command->heel_strike_rad = NUMBER_IN(COMMAND_HEEL_STRIKE, bits);
+}
+
+uint32_t saddle_wire_decode_time(const uint8_t data[SADDLE_WIRE_LENGTH])
+{
+    return CODE_IN(MEASURED_TIME_TIME, bits_of(data));
 }
 
 static void decode_com(uint64_t bits, saddle_measurement_t *measurement)
@@ -502,6 +551,7 @@ static void encode_process(const saddle_wire_health_t *health, uint8_t counter,
                CODE(RECEIVED_ACCEPTED, health->accepted));
     ENCODE(&frames[2], INPUTS, counter,
            CODE(INPUTS_COMMAND_SOURCE, health->command_source) |
+               CODE(INPUTS_SENDER_CLOCK, health->sender_clock) |
                CODE(INPUTS_COMMAND_AGE, age_ms(age_us[SADDLE_WIRE_COMMAND])) |
                CODE(INPUTS_COM_AGE, age_ms(age_us[SADDLE_WIRE_MEASURED_COM])) |
                CODE(INPUTS_LEFT_AGE, age_ms(age_us[SADDLE_WIRE_MEASURED_LEFT])) |
@@ -546,20 +596,39 @@ void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter
                CODE(COMMAND_WIRE_VERSION, SADDLE_WIRE_VERSION));
 }
 
-void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uint8_t counter,
+void saddle_wire_encode_time(uint32_t sampled_us, uint8_t number, saddle_frame_t *frame)
+{
+    ENCODE(frame, MEASURED_TIME, number,
+           CODE(MEASURED_TIME_ROUND, (uint32_t)number >> COUNTER_BITS) |
+               CODE(MEASURED_TIME_TIME, sampled_us));
+}
+
+void saddle_wire_authenticate_time(const saddle_cmac_key_t *key, uint32_t session,
+                                   saddle_frame_t *frame)
+{
+    const uint64_t bits = bits_of(frame->data) & UINT64_C(0x0000FFFFFFFFFF00);
+    seal(frame->data, crc_of_id(MESSAGE_MEASURED_TIME),
+         bits | CODE(MEASURED_TIME_CODE, code_of_time(key, session, frame->data)));
+}
+
+void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uint8_t number,
                                     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES])
 {
+    const uint32_t round = (uint32_t)number >> COUNTER_BITS;
     const saddle_vec2_t left_m = measurement->foot[SADDLE_LEFT].cop_m;
     const saddle_vec2_t right_m = measurement->foot[SADDLE_RIGHT].cop_m;
-    ENCODE(&frames[0], MEASURED_COM, counter,
-           NUMBER(MEASURED_COM_HEIGHT, true, measurement->com.height_m) |
+    ENCODE(&frames[0], MEASURED_COM, number,
+           CODE(MEASURED_COM_ROUND, round) |
+               NUMBER(MEASURED_COM_HEIGHT, true, measurement->com.height_m) |
                NUMBER(MEASURED_COM_VX, true, measurement->com.velocity_m_s.x) |
                NUMBER(MEASURED_COM_VY, true, measurement->com.velocity_m_s.y));
-    ENCODE(&frames[1], MEASURED_LEFT, counter,
-           CODE(MEASURED_LEFT_CONTACT, measurement->foot[SADDLE_LEFT].contact) |
+    ENCODE(&frames[1], MEASURED_LEFT, number,
+           CODE(MEASURED_LEFT_ROUND, round) |
+               CODE(MEASURED_LEFT_CONTACT, measurement->foot[SADDLE_LEFT].contact) |
                NUMBER(MEASURED_LEFT_X, true, left_m.x) | NUMBER(MEASURED_LEFT_Y, true, left_m.y));
-    ENCODE(&frames[2], MEASURED_RIGHT, counter,
-           CODE(MEASURED_RIGHT_CONTACT, measurement->foot[SADDLE_RIGHT].contact) |
+    ENCODE(&frames[2], MEASURED_RIGHT, number,
+           CODE(MEASURED_RIGHT_ROUND, round) |
+               CODE(MEASURED_RIGHT_CONTACT, measurement->foot[SADDLE_RIGHT].contact) |
                NUMBER(MEASURED_RIGHT_X, true, right_m.x) |
                NUMBER(MEASURED_RIGHT_Y, true, right_m.y));
 }
@@ -574,9 +643,12 @@ void saddle_wire_require_auth(saddle_wire_receiver_t *receiver,
 void saddle_wire_open_session(saddle_wire_receiver_t *receiver, uint32_t session)
 {
     receiver->guard.opened = true;
+    receiver->guard.session_before = receiver->guard.session;
+    receiver->guard.timed_before = receiver->guard.timed;
     receiver->guard.session = session;
     receiver->guard.freshness = 0;
     receiver->guard.waits = false;
+    receiver->guard.timed = false;
 }
 
 /** The next commander may be new, and counts from 1. */
@@ -603,5 +675,6 @@ void saddle_wire_encode_code(const saddle_cmac_key_t *key, uint32_t session, uin
 {
     ENCODE(frame, COMMAND_CODE, saddle_wire_counter(command->data),
            CODE(COMMAND_CODE_FRESHNESS, freshness) |
-               CODE(COMMAND_CODE_CODE, code_of(key, session, freshness, command->data)));
+               CODE(COMMAND_CODE_CODE,
+                    code_of(key, session, freshness, MESSAGE_COMMAND, command->data)));
 }

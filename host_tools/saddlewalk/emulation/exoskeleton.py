@@ -21,7 +21,7 @@ from saddlewalk.lockstep_host import LockstepHost
 from saddlewalk.planning.schedule import Schedule
 from saddlewalk.ticks import PLAN_MESSAGES, FrameBus, Messages, Signals, TickReader, next_tick
 from saddlewalk.transport.authentication import Authenticator
-from saddlewalk.transport.wire import Sender, identifier
+from saddlewalk.transport.wire import TIMES, Sender, identifier
 
 SILENCE_S = 3.0
 START_TICKS = 125  # without following commands, after which the walk is given up: 10 s
@@ -132,6 +132,7 @@ class Exoskeleton:
         self.reader = TickReader()
         self.frames_sent = 0
         self.ticks = 0
+        self._sets = 0
         self.health: dict[str, float] = {}  # the newest
         self.mode: int | None = None  # of the newest plan; None without one
         self.punctuality: Punctuality | None = None  # in real time
@@ -184,7 +185,7 @@ class Exoskeleton:
                 self._take(messages)
             punctuality.measured(self._wearer.time_s, now_s - deadline_s)
             self._advance(round(WAKE_UP_S / STEP_S))
-            self._send_measurement()
+            self._send_measurement(WAKE_UP_S)
             self._publish_truth()
             if taken:
                 heard_s = now_s
@@ -215,7 +216,7 @@ class Exoskeleton:
         patience_s = SILENCE_S if self.ticks or self._fresh else RESEND_S
         while time.monotonic() < deadline_s:
             self._send_command_frame(self._wearer.time_s)
-            self._send_measurement()
+            self._send_measurement(TICK_S)
             messages = next_tick(self._bus, self._hear, patience_s)
             if messages:
                 return messages
@@ -309,8 +310,18 @@ class Exoskeleton:
         for frame in frames:
             self._send(frame)
 
-    def _send_measurement(self) -> None:
+    def _time_frames(self, sampled_s: float) -> list[can.Message]:
+        time_us = round(sampled_s * 1e6) % TIMES
+        if self._authenticator:
+            return self._authenticator.time_frames(self._sender, time_us)
+        return [self._sender.frame("MEASURED_TIME", TIME=time_us, CODE=0)]
+
+    def _send_measurement(self, every_s: float) -> None:
+        """One set; the sender's clock counts them. A set that is sent late was sampled in time."""
         measured: Measurement = self._wearer.measure()
+        self._sets += 1
+        for frame in self._time_frames(self._sets * every_s):
+            self._send(frame)
         velocity = measured.velocity_m_s
         com = {"HEIGHT": measured.height_m, "VX": velocity.real, "VY": velocity.imag}
         self._send(self._sender.frame("MEASURED_COM", **com))

@@ -66,13 +66,16 @@ class Device:
         lib.saddle_inbox_init(self._inbox, lib.SADDLE_SOURCE_NONE)
 
     def take(self, frame: can.Message, time_us: int) -> bool:
-        """Receive a frame at time_us; returns whether it was accepted."""
-        before = self._inbox.receiver.accepted
+        """Receive a frame at time_us; returns whether it was accepted and not too late."""
+        before = self._used()
         data = bytes(frame.data)
         library().saddle_inbox_take_frame(
             self._inbox, frame.arbitration_id, data, len(data), time_us
         )
-        return self._inbox.receiver.accepted != before
+        return self._used() != before
+
+    def _used(self) -> int:
+        return int(self._inbox.receiver.accepted - self._inbox.frames_late)
 
     def tick(self, time_us: int) -> Messages:
         """Run one tick; returns its messages as sent on CAN."""
@@ -108,6 +111,7 @@ class Device:
             measured.foot[1].age_us,
         )
         health.command_source = inbox.authority
+        health.sender_clock = inbox.sender_clock
         for count in ("accepted", "malformed", "bad_crc", "bad_version", "bad_counter"):
             setattr(health, count, getattr(receiver, count))
 
@@ -134,7 +138,7 @@ def run(
     history = []
     for tick in range(round(scenario.duration_s / TICK_S)):
         walk_s = tick * TICK_S
-        for name, signals in (asked.signals, *measured_signals(wearer)):
+        for name, signals in (asked.signals, _time_of(walk_s), *measured_signals(wearer)):
             line.send(sender.frame(name, **signals), walk_s)
         if not _stalled(occurrence, walk_s):
             for arrival in line.due(walk_s):
@@ -173,6 +177,10 @@ def measured_signals(wearer: Wearer) -> list[tuple[str, dict[str, float]]]:
         for name, contact, foot in zip(MEASURED[1:], measured.contact, measured.feet_m, strict=True)
     )
     return [("MEASURED_COM", com), *feet]
+
+
+def _time_of(walk_s: float) -> tuple[str, dict[str, float]]:
+    return "MEASURED_TIME", {"TIME": round(walk_s * 1e6), "CODE": 0}
 
 
 def _stalled(occurrence: Occurrence, walk_s: float) -> bool:

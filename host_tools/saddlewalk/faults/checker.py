@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from saddlewalk.contract import STANDING, STARTING, STOPPING, TICK_S, WALKING
-from saddlewalk.faults.scenario import MEASURED, MESSAGES, Arrival
+from saddlewalk.faults.scenario import CLOCK, INPUTS, MEASURED, Arrival
 from saddlewalk.firmware import library
 from saddlewalk.ticks import PLAN_MESSAGES, Messages
 from saddlewalk.transport import wire
@@ -57,7 +57,7 @@ class Checker:
     body: Any  # saddle_body_t
     begin_s: float
     records: dict[str, MessageRecord] = field(
-        default_factory=lambda: {name: MessageRecord() for name in MESSAGES}
+        default_factory=lambda: {name: MessageRecord() for name in INPUTS}
     )
     violations: Counter[str] = field(default_factory=Counter)
     detected: int | None = None
@@ -74,6 +74,9 @@ class Checker:
     def arrived(self, arrival: Arrival, time_s: float) -> None:
         """Record a frame that was accepted at time_s of the firmware's clock."""
         name = wire.known_name(arrival.frame.arbitration_id)
+        self.forged += arrival.forged
+        if name in CLOCK:
+            return
         signals = wire.signals(arrival.frame)
         record = self.records[name]
         if name != "COMMAND" or self._commands(signals):
@@ -83,7 +86,6 @@ class Checker:
             self.walk_commanded = signals["MODE"] == 1 and signals["SPEED"] > 0
         if all(map(math.isfinite, signals.values())):
             record.usable_s = time_s
-        self.forged += arrival.forged
 
     @staticmethod
     def _commands(signals: dict[str, float]) -> bool:
@@ -185,7 +187,7 @@ class Checker:
         if ended and self.walk_commanded and not stopping:
             self.violations[SILENT_STOP] += 1
         self._mode = mode
-        needed = MESSAGES if self._armed else MESSAGES[:1]
+        needed = INPUTS if self._armed else INPUTS[:1]
         lost = any(ages_s[name] > self._limit_s(name) for name in needed)
         unusable = any(
             clock_s - self.records[name].usable_s > self._limit_s(name) + TICK_S for name in needed

@@ -19,7 +19,7 @@ from saddlewalk.emulation.host import running_host
 from saddlewalk.emulation.wearer import Body, Wearer
 from saddlewalk.faults.campaign import HEEL_STRIKE_RAD, Outcome, outcome_of
 from saddlewalk.faults.checker import Checker
-from saddlewalk.faults.scenario import MEASURED, MESSAGES, Line, Occurrence, Scenario, draw
+from saddlewalk.faults.scenario import INPUTS, KINDS, Line, Occurrence, Scenario, draw
 from saddlewalk.planning.schedule import schedule_of
 from saddlewalk.transport import wire
 from saddlewalk.transport.bus import open_bus, private_udp
@@ -30,7 +30,7 @@ AT_ONCE = 4  # processes that mostly sleep, and must not wait for each other
 SLACK_S = 0.1  # from the firmware's tick until it is checked
 STALL_MAX_S = 2.0  # a firmware that is silent for longer ends the wearer's walk
 OF_FRAMES_ONLY = ("duplicate", "flip", "spoof")  # faults of frames; commands are sent by LCM
-_AGES = dict(zip(MESSAGES, ("COMMAND_AGE", "COM_AGE", "LEFT_AGE", "RIGHT_AGE"), strict=True))
+_AGES = dict(zip(INPUTS, ("COMMAND_AGE", "COM_AGE", "LEFT_AGE", "RIGHT_AGE"), strict=True))
 
 
 class FaultyBus:
@@ -172,7 +172,8 @@ def run_live(scenario: Scenario, index: int, number: int, seed: int, config: Any
     fault = scenario.faults[index]
     occurrence = draw(fault, random)
     if occurrence.kind in OF_FRAMES_ONLY:
-        occurrence = replace(occurrence, messages=MEASURED)
+        measured = tuple(name for name in KINDS[occurrence.kind].messages if name != "COMMAND")
+        occurrence = replace(occurrence, messages=measured)
     frames, commands = (Line([occurrence], random) for _ in range(2))
     wearer = Wearer(Body.of(config), seed=int(random.integers(2**32)))
     speed_m_s = float(random.uniform(*scenario.speed_m_s))

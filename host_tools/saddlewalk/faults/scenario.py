@@ -20,8 +20,10 @@ from saddlewalk.errors import UserError
 from saddlewalk.toml_file import read_toml
 from saddlewalk.transport import wire
 
-MESSAGES = ("COMMAND", "MEASURED_COM", "MEASURED_LEFT", "MEASURED_RIGHT")
-MEASURED = MESSAGES[1:]
+INPUTS = ("COMMAND", "MEASURED_COM", "MEASURED_LEFT", "MEASURED_RIGHT")
+MEASURED = INPUTS[1:]
+CLOCK = ("MEASURED_TIME",)
+MESSAGES = INPUTS + CLOCK
 FRAME_BITS = 8 * wire.FRAME_LENGTH
 BURSTS_HZ = 1.0
 FLIPPED_SHARE = 0.5  # of the frames have flipped bits
@@ -91,6 +93,40 @@ def _reorder(within_s: float, random: np.random.Generator) -> Disturbance:
     return lambda arrival: [replace(arrival, time_s=arrival.time_s + random.random() * within_s)]
 
 
+def _jitter(within_s: float, random: np.random.Generator) -> Disturbance:
+    """Random delays, in order: none overtakes another."""
+    last_s = -math.inf
+
+    def disturb(arrival: Arrival) -> list[Arrival]:
+        nonlocal last_s
+        last_s = max(last_s, arrival.time_s + random.random() * within_s)
+        return [replace(arrival, time_s=last_s)]
+
+    return disturb
+
+
+def _batch(every_s: float, _: np.random.Generator) -> Disturbance:
+    """A gateway that keeps frames and forwards them together, every so often."""
+
+    def disturb(arrival: Arrival) -> list[Arrival]:
+        return [replace(arrival, time_s=math.ceil(arrival.time_s / every_s) * every_s)]
+
+    return disturb
+
+
+def _of_clock(arrival: Arrival, off_s: float) -> list[Arrival]:
+    time_us = wire.signals(arrival.frame)["TIME"] + round(off_s * 1e6)
+    return [replace(arrival, frame=wire.changed(arrival.frame, TIME=time_us % wire.TIMES))]
+
+
+def _drift(ppm: float, _: np.random.Generator) -> Disturbance:
+    return lambda arrival: _of_clock(arrival, arrival.born_s * ppm / 1e6)
+
+
+def _jump(off_s: float, _: np.random.Generator) -> Disturbance:
+    return lambda arrival: _of_clock(arrival, off_s)
+
+
 def _duplicate(copies: float, _: np.random.Generator) -> Disturbance:
     return lambda arrival: [arrival, *[replace(arrival) for _ in range(round(copies))]]
 
@@ -103,8 +139,9 @@ def _stuck(_: float, __: np.random.Generator) -> Disturbance:
         held = first.setdefault(arrival.frame.arbitration_id, arrival)
         if held is arrival:
             return [arrival]
-        counter = wire.signals(arrival.frame)["COUNTER"]
-        frame = wire.changed(held.frame, COUNTER=counter)
+        signals = wire.signals(arrival.frame)
+        own = {name: signals[name] for name in ("COUNTER", "ROUND")}
+        frame = wire.changed(held.frame, **own)
         return [replace(arrival, frame=frame, born_s=held.born_s)]
 
     return disturb
@@ -191,12 +228,16 @@ KINDS = {
     "delay": Kind("delay of the frames, s", 0, LONGEST_S, _delay),
     "duplicate": Kind("copies of each frame", 0, 100, _duplicate),
     "reorder": Kind("maximum of the random delay of each frame, s", 0, 60, _reorder),
+    "jitter": Kind("maximum of the random delay of each frame, in order, s", 0, 60, _jitter),
+    "batch": Kind("between two forwardings of a gateway, s", 0.001, LONGEST_S, _batch),
+    "drift": Kind("rate of the sender's clock less 1, ppm", -1e6, 1e6, _drift, CLOCK),
+    "jump": Kind("by which the sender's clock is off, s", -LONGEST_S, LONGEST_S, _jump, CLOCK),
     "stuck": Kind("unused: it repeats its first values", 0, 1, _stuck, MEASURED),
-    "noise": Kind("standard deviation in m, m/s and rad", 0, 1000, _noise),
-    "bias": Kind("added to or taken from each number, m, m/s and rad", 0, 1000, _bias),
+    "noise": Kind("standard deviation in m, m/s and rad", 0, 1000, _noise, INPUTS),
+    "bias": Kind("added to or taken from each number, m, m/s and rad", 0, 1000, _bias, INPUTS),
     "flip": Kind(f"bits flipped in {FLIPPED_SHARE:.0%} of the frames", 1, FRAME_BITS, _flip),
-    "spoof": Kind("share of the frames that are followed by another sender's", 0, 1, _spoof),
-    "nan": Kind("share of the frames with a NaN", 0, 1, _nan),
+    "spoof": Kind("share of frames that another sender's follow", 0, 1, _spoof, INPUTS),
+    "nan": Kind("share of the frames with a NaN", 0, 1, _nan, INPUTS),
     "clock": Kind("by which the firmware's clock jumps once, s", -LONGEST_S, LONGEST_S, None),
     "stall": Kind("how long the firmware's process stalls, s", 0, LONGEST_S, None),
 }
@@ -238,11 +279,12 @@ class Occurrence:
 
 
 def draw(fault: Fault, random: np.random.Generator) -> Occurrence:
-    """Draw the time of a fault and the messages that it affects."""
+    """Draw the time of a fault and the messages that it affects: one input, or all messages."""
     messages, known = fault.messages, KINDS[fault.kind].messages
     if not messages:
-        one = int(random.integers(2 * len(known)))
-        messages = known[one : one + 1] or known
+        inputs = tuple(name for name in known if name in INPUTS) or known
+        one = int(random.integers(2 * len(inputs)))
+        messages = inputs[one : one + 1] or known
     begin_s = float(random.uniform(*fault.from_s))
     return Occurrence(fault.kind, fault.strength, messages, begin_s, begin_s + fault.for_s)
 

@@ -13,7 +13,7 @@ from saddlewalk.errors import UserError
 from saddlewalk.gait.recording import Recording
 from saddlewalk.gait.states import State, nothing_at, state_at
 from saddlewalk.ticks import Messages, Signals, TickReader, next_tick, scores_of
-from saddlewalk.transport.wire import Sender
+from saddlewalk.transport.wire import TIMES, Sender
 
 ANSWER_TIMEOUT_S = 2.0
 
@@ -40,6 +40,7 @@ def measurements(states: Iterable[State]) -> Iterator[tuple[float, Messages]]:
             state["t_s"],
             {
                 "COMMAND": {"MODE": 0, "SPEED": 0.0, "HEEL_STRIKE": 0.0},
+                "MEASURED_TIME": {"TIME": round(state["t_s"] * 1e6) % TIMES, "CODE": 0},
                 "MEASURED_COM": {
                     "HEIGHT": state["com_z_m"],
                     "VX": state["com_vx_m_s"],

@@ -1,4 +1,4 @@
-"""Authenticated commands, as `docs/authentication.md` describes them: the commanding side.
+"""Authenticated commands and times, as `docs/authentication.md` describes them: the sender.
 
 The counterpart of the guard in `<saddlewalk/wire.h>`.
 """
@@ -13,7 +13,7 @@ from cryptography.hazmat.primitives.ciphers.algorithms import AES
 from cryptography.hazmat.primitives.cmac import CMAC
 
 from saddlewalk.errors import UserError
-from saddlewalk.transport.wire import Receiver, Sender, identifier
+from saddlewalk.transport.wire import Receiver, Sender, changed, identifier
 
 KEY_BYTES = 16
 FRESHNESS_MAX = 65535
@@ -40,7 +40,7 @@ def write_new_key(path: Path) -> None:
 
 
 class Authenticator:
-    """Makes each COMMAND and the COMMAND_CODE that precedes it.
+    """Makes each COMMAND and the COMMAND_CODE that precedes it, and each MEASURED_TIME.
 
     The codes are for the session in the firmware's SESSION frames: give hear() every frame that is
     received.
@@ -72,6 +72,13 @@ class Authenticator:
         code = code_of(self._key, self._session, self._freshness, frame)
         return [sender.frame("COMMAND_CODE", FRESHNESS=self._freshness, CODE=code), frame]
 
+    def time_frames(self, sender: Sender, time_us: int) -> list[can.Message]:
+        """MEASURED_TIME; empty without a session."""
+        frame = sender.frame("MEASURED_TIME", TIME=time_us, CODE=0)
+        if self._session is None:
+            return []
+        return [changed(frame, CODE=time_code_of(self._key, self._session, frame))]
+
 
 def code_of(key: bytes, session: int, freshness: int, command: can.Message) -> int:
     """The first 4 bytes of the AES-128-CMAC of session, freshness, identifier and frame."""
@@ -79,3 +86,10 @@ def code_of(key: bytes, session: int, freshness: int, command: can.Message) -> i
     cmac.update(struct.pack("<IHH", session, freshness, command.arbitration_id))
     cmac.update(bytes(command.data))
     return int.from_bytes(cmac.finalize()[:4], "big")
+
+
+def time_code_of(key: bytes, session: int, frame: can.Message) -> int:
+    """The first 2 bytes, likewise, of a MEASURED_TIME without its CRC and code; freshness is 0."""
+    covered = bytes(1) + bytes(frame.data[1:6]) + bytes(2)
+    covered_frame = can.Message(arbitration_id=frame.arbitration_id, data=covered)
+    return code_of(key, session, 0, covered_frame) >> 16

@@ -14,9 +14,12 @@ import cantools
 import numpy as np
 
 from saddlewalk import paths
+from saddlewalk.core import defined
 
 FRAME_LENGTH = 8
 COUNTERS = 16
+ROUNDS = 8
+TIMES = 1 << 32  # microseconds after which MEASURED_TIME wraps
 COUNTER_STEP_MAX = 4
 NOT_AVAILABLE = -32768
 _RAW_MAX = 32767
@@ -24,6 +27,7 @@ _RAW_MAX = 32767
 _database = cantools.database.load_file(paths.source("firmware/wire/saddlewalk.dbc"))
 assert isinstance(_database, cantools.database.can.Database)
 WIRE_VERSION = int(str(_database.version))
+OLDEST_VERSION = int(defined("SADDLE_WIRE_OLDEST_VERSION", "wire/include/saddlewalk/wire.h"))
 
 
 def _crc_of_byte(byte: int) -> int:
@@ -86,6 +90,7 @@ class _Message:
             "CRC": 0,
             "COUNTER": counter,
             "WIRE_VERSION": WIRE_VERSION,
+            "ROUND": 0,
         }
         given = known | values
         raw = {name: signal.raw(given[name]) for name, signal in self.signals.items()}
@@ -105,17 +110,18 @@ class _Message:
 _messages = [_Message(message) for message in _database.messages]
 _by_name = {message.name: message for message in _messages}
 _by_id = {message.id: message for message in _messages}
-_OWN = {"CRC", "COUNTER", "WIRE_VERSION"}
+_OWN = {"CRC", "COUNTER", "ROUND", "WIRE_VERSION"}
 
 
 class Sender:
-    """Makes sealed frames. Each message name has its own alive counter, from 0."""
+    """Makes sealed frames. Each message name has its own alive counter, from 0, and round."""
 
     def __init__(self) -> None:
-        self._counters: dict[str, int] = {}
+        self._sent: dict[str, int] = {}
 
     def frame(self, name: str, **values: float | None) -> can.Message:
-        """The next frame of a message, with every signal but CRC, COUNTER and WIRE_VERSION given.
+        """The next frame of a message, with every signal but CRC, COUNTER, ROUND and WIRE_VERSION
+        given.
 
         Numbers in SI units and rad; None or not finite is sent as not available. Raises ValueError
         for a name that the database does not have or a signal that is missing or too many.
@@ -126,9 +132,10 @@ class Sender:
         expected = message.signals.keys() - _OWN
         if values.keys() != expected:
             raise ValueError(f"{name} has {sorted(values)}: give {sorted(expected)}")
-        counter = self._counters.get(name, 0)
-        self._counters[name] = (counter + 1) % COUNTERS
-        data = message.encode(counter, values)
+        sent = self._sent.get(name, 0)
+        self._sent[name] = sent + 1
+        rounds = {"ROUND": sent // COUNTERS % ROUNDS}
+        data = message.encode(sent % COUNTERS, values | rounds)
         return can.Message(arbitration_id=message.id, is_extended_id=False, data=data)
 
 
@@ -182,7 +189,8 @@ class Receiver:
             self.bad_crc += 1
             return None
         values = message.decode(frame.data)
-        if values.get("WIRE_VERSION", WIRE_VERSION) != WIRE_VERSION:
+        oldest = OLDEST_VERSION if message.name == "COMMAND" else WIRE_VERSION
+        if not oldest <= values.get("WIRE_VERSION", WIRE_VERSION) <= WIRE_VERSION:
             self.bad_version += 1
             return None
         if not self._in_step(message.id, int(values["COUNTER"])):
