@@ -1,6 +1,7 @@
 #include "model/config.h"
 
 #include "math/elementary.h"
+#include "math/fields.h"
 
 #include <saddlewalk/saddlewalk.h>
 
@@ -187,11 +188,6 @@ const saddle_config_field_t *saddle_config_field(size_t index)
     return index < FIELD_COUNT ? &FIELDS[index] : NULL;
 }
 
-static float field_value(const saddle_config_t *config, const saddle_config_field_t *field)
-{
-    return *(const float *)(const void *)((const char *)config + field->offset);
-}
-
 /* [E4] */
 float saddle_regressed_half_step_m(const saddle_config_t *config, float speed_m_s)
 {
@@ -251,10 +247,9 @@ static const char *check_reach(const saddle_config_t *config)
 
 const char *saddle_config_check(const saddle_config_t *config)
 {
-    for (size_t i = 0; i < FIELD_COUNT; i++) {
-        if (!saddle_in_range(field_value(config, &FIELDS[i]), FIELDS[i].min, FIELDS[i].max)) {
-            return FIELDS[i].name;
-        }
+    const char *bad_field = saddle_bad_field(FIELDS, FIELD_COUNT, config);
+    if (bad_field != NULL) {
+        return bad_field;
     }
     if ((unsigned)config->ankle >= (unsigned)SADDLE_ANKLE_COUNT) {
         return "ankle";

@@ -1,6 +1,6 @@
 #include "kinematics/legs.h"
 
-#include "settings/fields.h"
+#include "math/fields.h"
 
 #define FIELD(name, min, max) {#name, offsetof(saddle_legs_t, name), min, max}
 /* These come last in LEGS_FIELDS: three of each joint, in the joints' order. */

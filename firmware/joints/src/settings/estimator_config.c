@@ -1,4 +1,4 @@
-#include "settings/fields.h"
+#include "math/fields.h"
 
 #include <saddlewalk/estimator.h>
 
