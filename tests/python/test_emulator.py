@@ -30,17 +30,26 @@ pytestmark = pytest.mark.firmware
 STEADY = Noise(0.0, 0.0, 0.0)
 
 
-def default_config():
+def config_with(**fields: float):
     config = ffi().new("saddle_config_t *")
     config[0] = library().saddle_config_default(1.79, 63.3)
+    for name, value in fields.items():
+        setattr(config, name, value)
     return config
+
+
+def default_config():
+    return config_with()
 
 
 Speeds = float | list[tuple[float, float]]
 
 
-def walk(wearer: Wearer, speeds: Speeds, duration_s: float, watch=None) -> Wearer:
-    """Lead the wearer through a walk; watch(plan, steps since that plan) after every step."""
+def walk(wearer: Wearer, speeds: Speeds, duration_s: float, watch=None, **fields: float) -> Wearer:
+    """Lead the wearer through a walk; watch(plan, steps since that plan) after every step.
+
+    fields: of the configuration.
+    """
     schedule = schedule_of(
         speeds if isinstance(speeds, list) else [(0.0, speeds)], math.radians(10)
     )
@@ -49,7 +58,7 @@ def walk(wearer: Wearer, speeds: Speeds, duration_s: float, watch=None) -> Weare
         if watch:
             watch(tick.plan, steps)
 
-    ticks = closed_loop.walk(default_config(), wearer, schedule, after_step)
+    ticks = closed_loop.walk(config_with(**fields), wearer, schedule, after_step)
     for _ in itertools.takewhile(lambda tick: tick.time_s < duration_s - TICK_S / 2, ticks):
         pass
     return wearer
@@ -187,6 +196,25 @@ def test_the_recovery_step_prevents_falls(speed_m_s, push):
     planned = walk(Wearer(pushes=(push,), takes_recovery_step=False), speed_m_s, 10.0)
     assert planned.fallen
     assert not walk(Wearer(pushes=(push,)), speed_m_s, 10.0).fallen
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "push"),
+    [(1.2, Push(32, 5.0, 180)), (1.2, Push(10, 5.0, 90)), (0.8, Push(12, 5.0, 90))],
+)
+def test_a_wearer_who_only_follows_the_plan_takes_the_recovery_step_that_is_in_it(speed_m_s, push):
+    def planned(gain: float) -> Wearer:
+        wearer = Wearer(pushes=(push,), takes_recovery_step=False)
+        return walk(wearer, speed_m_s, 10.0, placement_gain=gain)
+
+    assert planned(0.0).fallen and not planned(0.2).fallen
+
+
+def test_the_trailing_foot_hands_over_when_the_plan_steps_on_a_foot_that_landed_early():
+    # While it kept the load until the planned landing, this push ended in a fall 4 s later.
+    wearer = Wearer(pushes=(Push(18, 12.0, 90),))
+    speeds = [(0.0, 0.0), (1.0, 0.8), (6.0, 1.2), (16.0, 0.0)]
+    assert not walk(wearer, speeds, 20.0, landing_early_s=0.12).fallen
 
 
 @pytest.mark.parametrize("push", [Push(25, 5.0, 0), Push(10, 5.0, 90)])

@@ -312,6 +312,8 @@ class Wearer:
             self._leading, self._since_landing_s = plan.support, math.inf
         elif not self.feet[plan.support].contact:
             self._land(plan.support)
+        elif plan.support == self._leading:
+            self._since_landing_s = max(self._since_landing_s, 0.0)
         self._hold(plan)
 
     def _hold(self, plan: Plan) -> None:
@@ -424,7 +426,7 @@ class Wearer:
                 self._land(side)
 
     def _land(self, side: int, early_s: float = 0.0) -> None:
-        """early_s: before the plan has the foot land; until then the other stays as well."""
+        """early_s: before the plan has the foot land; until it steps on it, the other one stays."""
         self.feet[side].land()
         self._leading = side
         self._since_landing_s = -early_s
