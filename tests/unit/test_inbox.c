@@ -171,6 +171,25 @@ static void test_a_jump_of_our_own_clock_is_no_delay(void)
                               saddle_inbox_read(&inbox, 861000)->measurement.com.age_us);
 }
 
+static void test_of_a_set_whose_time_never_came_nothing_is_taken(void)
+{
+    send_timed_set(0, 0, 1000);
+    inbox.receiver.alive[SADDLE_WIRE_MEASURED_COM].seen = false;
+    send_set(100, 1, 2000);
+    TEST_ASSERT_EQUAL_UINT32(1, inbox.frames_late);
+    TEST_ASSERT_EQUAL_UINT32(2000, saddle_inbox_read(&inbox, 3000)->measurement.com.age_us);
+}
+
+/** What is held seems to be of the future then. */
+static void test_our_own_clock_set_back_takes_what_comes(void)
+{
+    send_timed_set(0, 0, 900000);
+    (void)saddle_inbox_read(&inbox, 900000);
+    send_timed_set(1, 80000, 500000);
+    TEST_ASSERT_EQUAL_UINT32(0, inbox.frames_late);
+    TEST_ASSERT_EQUAL_UINT32(0, saddle_inbox_read(&inbox, 500000)->measurement.com.age_us);
+}
+
 static void test_in_lockstep_every_age_is_0(void)
 {
     inbox.lockstep = true;
@@ -193,6 +212,8 @@ int main(void)
     RUN_TEST(test_late_data_are_old_data);
     RUN_TEST(test_what_was_measured_before_what_is_held_is_not_taken);
     RUN_TEST(test_a_jump_of_our_own_clock_is_no_delay);
+    RUN_TEST(test_of_a_set_whose_time_never_came_nothing_is_taken);
+    RUN_TEST(test_our_own_clock_set_back_takes_what_comes);
     RUN_TEST(test_in_lockstep_every_age_is_0);
     return UNITY_END();
 }

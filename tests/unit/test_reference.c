@@ -125,6 +125,16 @@ static void test_who_stands_is_at_rest_between_the_feet(void)
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.5, at.load[0]);
 }
 
+/* A plan without a step has no other landing than its own. */
+static void test_a_plan_without_a_step_keeps_its_landing(void)
+{
+    memset(&plan, 0, sizeof plan);
+    plan.landing_m = (saddle_vec2_t){0.3f, -0.1f};
+    const saddle_vec2_t landing_m = saddle_unmoved_landing_m(&plan);
+    TEST_ASSERT_EQUAL_FLOAT(0.3f, landing_m.x);
+    TEST_ASSERT_EQUAL_FLOAT(-0.1f, landing_m.y);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -132,6 +142,7 @@ int main(void)
     RUN_TEST(test_cop_stays_on_the_soles_and_the_loads_add_up);
     RUN_TEST(test_continued_reference_is_that_of_the_plan_then);
     RUN_TEST(test_landing_that_was_moved_is_not_in_the_reference);
+    RUN_TEST(test_a_plan_without_a_step_keeps_its_landing);
     RUN_TEST(test_who_stands_is_at_rest_between_the_feet);
     return UNITY_END();
 }

@@ -143,6 +143,17 @@ static void test_a_set_whose_time_was_lost_is_as_old_as_the_one_before_it(void)
     TEST_ASSERT_FALSE(saddle_sender_clock_sampled(&clock, 117, 2000000u, &sampled_us));
 }
 
+static void test_of_few_sets_the_others_are_not_known(void)
+{
+    uint64_t sampled_us = 1;
+    saddle_sender_clock_take(&clock, 0, 0, 500u);
+    TEST_ASSERT_FALSE(saddle_sender_clock_sampled(&clock, SET_MAX, 600u, &sampled_us));
+    /* Sampled 10 ms before ours began to count. */
+    saddle_sender_clock_take(&clock, 1, PERIOD_US, 600u);
+    TEST_ASSERT_TRUE(saddle_sender_clock_sampled(&clock, 0, 600u, &sampled_us));
+    TEST_ASSERT_EQUAL_UINT64(0, sampled_us);
+}
+
 static void test_silence(void)
 {
     TEST_ASSERT_FALSE(saddle_sender_clock_runs(&clock, 0));
@@ -171,6 +182,7 @@ int main(void)
     RUN_TEST(test_a_sender_that_restarted_is_believed_after_16_sets);
     RUN_TEST(test_frames_out_of_order_are_as_old_as_they_are);
     RUN_TEST(test_a_set_whose_time_was_lost_is_as_old_as_the_one_before_it);
+    RUN_TEST(test_of_few_sets_the_others_are_not_known);
     RUN_TEST(test_silence);
     return UNITY_END();
 }

@@ -515,15 +515,17 @@ static void test_a_time_is_authenticated_by_its_own_code_and_rises_in_a_session(
     saddle_wire_require_auth(&receiver, KEY);
     TEST_ASSERT_FALSE(accepts_time(0, 2000, 0));
     saddle_wire_open_session(&receiver, 7);
+    TEST_ASSERT_FALSE(accepts_time(0, 2000, 0)); /* there was no session before */
     TEST_ASSERT_TRUE(accepts_time(7, 3000, 0));
     TEST_ASSERT_FALSE(accepts_time(7, 3000, 0)); /* a replay */
     TEST_ASSERT_FALSE(accepts_time(7, 2000, 0));
     TEST_ASSERT_FALSE(accepts_time(8, 4000, 0));
     TEST_ASSERT_FALSE(accepts_time(7, 4000, 4));
-    TEST_ASSERT_EQUAL_UINT32(5, receiver.bad_code);
+    TEST_ASSERT_EQUAL_UINT32(6, receiver.bad_code);
     TEST_ASSERT_TRUE(accepts_time(7, 4000, 0));
     saddle_wire_open_session(&receiver, 8);
-    TEST_ASSERT_TRUE(accepts_time(7, 5000, 0)); /* the sender has not heard of the session */
+    TEST_ASSERT_FALSE(accepts_time(9, 5000, 0)); /* neither of this session nor the one before */
+    TEST_ASSERT_TRUE(accepts_time(7, 5000, 0));  /* the sender has not heard of the session */
     TEST_ASSERT_FALSE(accepts_time(7, 5000, 0));
     /* Earlier, with a number that follows. */
     TEST_ASSERT_TRUE(accepts_time(8, UINT32_MAX - 290u, 0));
