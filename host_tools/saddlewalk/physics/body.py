@@ -85,6 +85,7 @@ class Body:
     legs: tuple[Leg, Leg]
     knee_sign: float  # of the joint angle of a bent knee
     sole_half_width_m: float  # within which the CoP is kept
+    landed_early_n: float  # load of a foot that has landed before its time
 
     @property
     def mass_kg(self) -> float:
@@ -107,7 +108,7 @@ def winter(height_m: float, mass_kg: float) -> Body:
     legs = tuple(_add_leg(pelvis, name, height_m, mass_kg) for name in SIDES)
     torques = {f"{side}_{name}": torque for side in SIDES for name, (*_, torque) in JOINTS.items()}
     model = compiled(spec, torques)
-    return Body("winter", model, "pelvis", (legs[0], legs[1]), 1.0, 0.030)
+    return Body("winter", model, "pelvis", (legs[0], legs[1]), 1.0, 0.030, 60.0)
 
 
 def _add_leg(pelvis: Any, side: str, height_m: float, mass_kg: float) -> Leg:

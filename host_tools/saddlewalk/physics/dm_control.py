@@ -43,6 +43,8 @@ SOLE_M = np.array([(0.14, 0.04, 0.0), (0.14, -0.02, 0.0), (-0.07, 0.02, 0.0), (-
 SOLE_RADIUS_M = 0.027
 PENDULUM_RATIO = 0.51  # of the height: knees a little bent
 STEP_WIDTH_M = 0.16
+SOLE_HALF_WIDTH_M = 0.025  # within which the CoP is kept
+LANDED_EARLY_N = 150.0  # a round sole bounces off at less
 
 
 def dm_control() -> Body:
@@ -66,7 +68,8 @@ def dm_control() -> Body:
             geom.contype = geom.conaffinity = 0
     legs = tuple(_leg(side) for side in SIDES)
     model = compiled(spec, torques)
-    return Body("dm_control", model, "pelvis", (legs[0], legs[1]), -1.0, 0.025)
+    pair = (legs[0], legs[1])
+    return Body("dm_control", model, "pelvis", pair, -1.0, SOLE_HALF_WIDTH_M, LANDED_EARLY_N)
 
 
 @functools.cache

@@ -49,7 +49,6 @@ class Gains:
     reach_down_m: float = 0.01
 
     landed_n: float = 20.0  # load of a foot that has landed when planned
-    landed_early_n: float = 60.0  # and of one that lands before
     early_max_s: float = 0.12
     lifted_n: float = 10.0  # load of a foot that may leave the ground
     lifted_s: float = 0.015  # once it was so light for so long

@@ -238,7 +238,8 @@ class PhysicalWearer(emulation.Wearer):
         if left_s <= 0:
             self.feet[side].contact = True
         elif (
-            left_s < self.gains.early_max_s and self.plant.loads_n[side] > self.gains.landed_early_n
+            left_s < self.gains.early_max_s
+            and self.plant.loads_n[side] > self.plant.body.landed_early_n
         ):
             self.feet[side].contact = True
             self._swings[side], self._landed_early = None, side
