@@ -70,8 +70,7 @@ void saddle_sender_clock_take(saddle_sender_clock_t *clock, uint8_t number, uint
     clock->heard_us = received_us;
     const uint32_t place = number % SADDLE_SENDER_SETS;
     clock->sets[place].sampled_us = sampled_us;
-    clock->sets[place].number = number;
-    clock->sets[place].known = true;
+    clock->sets[place].held = (uint8_t)(number + 1u);
 }
 
 void saddle_sender_clock_forget(saddle_sender_clock_t *clock)
@@ -90,7 +89,7 @@ bool saddle_sender_clock_sampled(const saddle_sender_clock_t *clock, uint8_t num
     for (uint32_t back = 0; back < SADDLE_SENDER_SETS; ++back) {
         const uint8_t sought = (uint8_t)(number - back) & SADDLE_WIRE_SET_MAX;
         const uint32_t place = sought % SADDLE_SENDER_SETS;
-        if (clock->sets[place].known && clock->sets[place].number == sought) {
+        if (clock->sets[place].held == sought + 1u) {
             const uint32_t before_us = clock->newest_us - clock->sets[place].sampled_us;
             const uint64_t local_us = clock->local_us > before_us ? clock->local_us - before_us : 0;
             *sampled_us = local_us < received_us ? local_us : received_us;

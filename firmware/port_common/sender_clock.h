@@ -28,8 +28,7 @@ typedef struct {
     uint64_t heard_us;  /**< when the last time was received */
     struct {
         uint32_t sampled_us;
-        uint8_t number;
-        bool known;
+        uint8_t held; /**< its number + 1; 0: none */
     } sets[SADDLE_SENDER_SETS];
 } saddle_sender_clock_t;
 

@@ -594,9 +594,10 @@ static void query(uint32_t *state, uint64_t last_us)
     assert_sound_scores(&at.scores);
 }
 
+/* Of this seed's configurations some bring the CoM to where no leg reaches it. */
 static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
 {
-    uint32_t state = 2026;
+    uint32_t state = 13;
     int walking = 0;
     int stopping = 0;
     int valid_scores = 0;

@@ -115,8 +115,17 @@ static void read_intent(const saddle_planner_t *planner, const saddle_model_t *m
         intent->com.com_m.y = plan->com_m.y - (stance_m->y + 0.5f * (other_m->y - stance_m->y));
         intent->com.velocity_m_s.x = plan->com_velocity_m_s.x;
         intent->com.velocity_m_s.y = plan->com_velocity_m_s.y;
+        intent->step.stance = stance;
+        intent->step.half_behind_m = intent->step.width_behind_m = 0.0f;
+        intent->step.landing_m.x = intent->step.landing_m.y = 0.0f;
+        intent->place.x_m = 0.0f;
+        intent->place.phase = (saddle_sin_cos_t){0.0f, 1.0f};
+        intent->may_place = false;
+        intent->reference_xcom_m.x = intent->reference_xcom_m.y = 0.0f;
         return;
     }
+    intent->com.com_m.x = intent->com.com_m.y = 0.0f;
+    intent->com.velocity_m_s.x = intent->com.velocity_m_s.y = 0.0f;
     const saddle_vec2_t landing_m = saddle_unmoved_landing_m(plan);
     intent->step.stance = stance;
     intent->step.half_behind_m = 0.5f * plan->step_length_m;

@@ -154,7 +154,8 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     saddle_score_posture(model, &posture, scores, &support);
     const uint32_t faults = sensed->faults | saddle_score_faults(known, scores);
     bool on_plan = false;
-    verdict->compared = false;
+    verdict->compared = verdict->on_track = false;
+    verdict->recovery.found = verdict->recovery.stops = false;
     supervisor->placement.known = false;
     if (is_measured(known) && scores->bos.defined) {
         const saddle_wearer_t wearer = {steps, sensed->measurement, &posture, scores, &support};

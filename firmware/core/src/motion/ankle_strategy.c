@@ -90,13 +90,16 @@ void saddle_ankle(const saddle_model_t *model, const saddle_transition_t *transi
     ankle->leg_rate_m_s = model->config.cop_range_m * saddle_cos(0.5f * angle_rad) * angle_rate;
 }
 
+/* Of a CoM that no leg reaches, where any configuration and feet measured anywhere can bring it. */
+#define HEIGHT_MIN_M2 1.0e-4f
+
 /* [E14] */
 void saddle_com_height(const saddle_ankle_state_t *ankle, saddle_vec2_t offset_m,
                        saddle_vec2_t velocity_m_s, float *height_m, float *height_rate_m_s)
 {
     const float horizontal_m2 = offset_m.x * offset_m.x + offset_m.y * offset_m.y;
     const float length_m = ankle->leg_length_m;
-    const float height = sqrtf(length_m * length_m - horizontal_m2);
+    const float height = sqrtf(saddle_larger(length_m * length_m - horizontal_m2, HEIGHT_MIN_M2));
     *height_m = height;
     *height_rate_m_s = (length_m * ankle->leg_rate_m_s - offset_m.x * velocity_m_s.x -
                         offset_m.y * velocity_m_s.y) /

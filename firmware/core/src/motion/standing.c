@@ -91,7 +91,7 @@ float saddle_standing_height_m(const saddle_planner_t *planner, const saddle_mod
     const saddle_vec2_t from_other_m = saddle_vec2_sub(com_m, planner->other_m);
     const float nearer_m2 =
         saddle_smaller(saddle_vec2_dot(com_m, com_m), saddle_vec2_dot(from_other_m, from_other_m));
-    return sqrtf(model->body.pendulum_m * model->body.pendulum_m - nearer_m2);
+    return sqrtf(saddle_larger(model->body.pendulum_m * model->body.pendulum_m - nearer_m2, 0.0f));
 }
 
 void saddle_stand_beside(saddle_planner_t *planner, float com_y_m)
