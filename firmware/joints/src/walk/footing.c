@@ -6,8 +6,9 @@
 
 #include <math.h>
 
-/* A CoM lower than this carries nobody. */
+/* No CoM of a person is lower or higher. */
 #define HEIGHT_MIN_M 0.1f
+#define HEIGHT_MAX_M 4.0f
 
 /* Sine of the pitch from which a foot on its toe is not put down flat at once. */
 #define HEEL_UP_MIN 0.02f
@@ -68,7 +69,7 @@ static void land(saddle_joint_walk_t *walk, unsigned side, float early_s)
 }
 
 /* What the plan alone says of the feet. */
-static void obey_plan(saddle_joint_walk_t *walk, const saddle_moment_t *moment)
+static void follow_plan(saddle_joint_walk_t *walk, const saddle_moment_t *moment)
 {
     const saddle_plan_t *plan = moment->plan;
     if (saddle_both_stand(plan)) {
@@ -104,12 +105,12 @@ saddle_moment_t saddle_moment(saddle_joint_walk_t *walk, const saddle_joint_walk
     moment.estimate = estimate;
     moment.dt_s = dt_s;
     moment.frequency_rad_s =
-        sqrtf(SADDLE_GRAVITY_M_S2 / saddle_larger(com->position_m.z, HEIGHT_MIN_M));
+        sqrtf(SADDLE_GRAVITY_M_S2 / saddle_clamp(com->position_m.z, HEIGHT_MIN_M, HEIGHT_MAX_M));
     moment.xcom_m =
         (saddle_vec2_t){com->position_m.x + com->velocity_m_s.x / moment.frequency_rad_s,
                         com->position_m.y + com->velocity_m_s.y / moment.frequency_rad_s};
     walk->since_landing_s = saddle_smaller(walk->since_landing_s + dt_s, LONG_AGO_S);
-    obey_plan(walk, &moment);
+    follow_plan(walk, &moment);
     hold(walk, &moment);
     return moment;
 }

@@ -2,6 +2,7 @@
 
 #include "kinematics/inverse.h"
 #include "kinematics/legs.h"
+#include "math/bytes.h"
 #include "math/elementary.h"
 #include "space/vec3.h"
 
@@ -143,11 +144,8 @@ bool saddle_reference_update(saddle_joint_walk_t *walk, const saddle_moment_t *m
     }
     for (unsigned side = 0; side < 2; side++) {
         fade(walk, &raw, side, moment->dt_s, intent);
-        for (unsigned joint = 0; joint < SADDLE_LEG_JOINTS; joint++) {
-            walk->joints.angle_rad[side][joint] = raw.angle_rad[side][joint];
-            walk->joints.rate_rad_s[side][joint] = raw.rate_rad_s[side][joint];
-        }
     }
+    saddle_copy(&walk->joints, &raw, sizeof raw);
     intent->com_height_m = walk->height_m;
     intent->com_rise_m_s = walk->height_rate_m_s;
     return true;
