@@ -118,11 +118,11 @@ format: .venv/installed-test ## lay out the Python and C code
 	@$(BIN)/ruff format --quiet .
 	@git ls-files '*.c' '*.h' | xargs $(BIN)/clang-format -i
 
-lint: build/build.ninja .venv/installed-test ## ruff, and clang-tidy over the firmware; make test checks layout and types
+lint: build/build.ninja .venv/installed-test ## ruff, and clang-tidy over the firmware that this build compiles; make test checks layout and types
 	@$(BIN)/ruff check --quiet .
 	@$(BIN)/ruff format --quiet --check .
 	@$(BIN)/ninja -C build --quiet
-	@git ls-files 'firmware/*.c' | grep -v -e /mps2/ -e /port_arduino/ | xargs -n 4 -P $$(nproc) \
+	@git ls-files 'firmware/*.c' | grep -v -e /mps2/ -e /port_arduino/ -e /port_wasm/ | xargs -n 4 -P $$(nproc) \
 		$(BIN)/clang-tidy -p build --quiet
 
 clean: ## remove all that was built, and the virtual environment

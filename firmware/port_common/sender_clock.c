@@ -59,11 +59,10 @@ void saddle_sender_clock_take(saddle_sender_clock_t *clock, uint8_t number, uint
 {
     const bool silent =
         received_us > clock->heard_us && received_us - clock->heard_us > LONGEST_SILENCE_US;
-    if (!clock->heard || silent) {
-        begin(clock, number, sampled_us, received_us);
-    } else if (step_us(clock->newest_us, sampled_us) > 0) {
+    const bool goes_on = clock->heard && !silent;
+    if (goes_on && step_us(clock->newest_us, sampled_us) > 0) {
         advance(clock, number, sampled_us, received_us);
-    } else if (went_back(clock, number, sampled_us)) {
+    } else if (!goes_on || went_back(clock, number, sampled_us)) {
         begin(clock, number, sampled_us, received_us);
     }
     clock->last_us = sampled_us;

@@ -80,7 +80,7 @@ const char *saddle_legs_check(const saddle_legs_t *legs)
     }
     for (unsigned joint = 0; joint < SADDLE_LEG_JOINTS; joint++) {
         if (legs->joint[joint].min_rad > legs->joint[joint].max_rad) {
-            return LEGS_FIELDS[LEGS_FIELD_COUNT - 3u * (SADDLE_LEG_JOINTS - joint)].name;
+            return LEGS_FIELDS[LEGS_FIELD_COUNT - (size_t)3u * (SADDLE_LEG_JOINTS - joint)].name;
         }
     }
     return NULL;
