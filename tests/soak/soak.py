@@ -65,6 +65,7 @@ class Soak(Observer):
 
     def tick(self, tick: Tick, wearer: Wearer) -> None:
         self.ticks += 1
+        self.finished = wearer.fallen  # who lies there cannot be asked to walk
 
 
 def speeds(random: np.random.Generator) -> Schedule:
@@ -108,7 +109,7 @@ def main() -> None:
                 noisy, wearer, config, speeds(random), observers=[soak], fresh=walk == 0
             )
             device.run("lockstep", WALK_S)
-            soak.falls += wearer.fallen
+            soak.falls, soak.finished = soak.falls + wearer.fallen, False
             rejected = device.health["REJECTED_FRAMES"]
             last = used(process.pid)
             before = last if walk < WARM_UP_WALKS else before
