@@ -27,7 +27,8 @@ def readme(pattern: str) -> list[float]:
 
 def test_the_costs_of_a_tick():
     median, most, context = readme(
-        r"some ([\d,]+) instructions on a Cortex-M4F, at most ([\d,]+), in ([\d,]+) bytes of context"
+        r"some ([\d,]+) instructions on a Cortex-M4F, at most ([\d,]+), "
+        r"in ([\d,]+) bytes of context"
     )
     assert median == round(row("costs.md", "tick of a walk, -O2, median")[0], -2)
     assert most == 100 * math.ceil(row("costs.md", "any tick, -O2, maximum")[0] / 100)
