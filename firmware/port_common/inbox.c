@@ -14,9 +14,9 @@ void saddle_inbox_init(saddle_inbox_t *inbox, saddle_source_t chosen)
     *inbox = (saddle_inbox_t){.chosen = chosen, .authority = chosen};
 }
 
-static void note_birth(saddle_inbox_t *inbox, saddle_wire_message_t message, uint64_t time_us)
+static void note_age(saddle_inbox_t *inbox, saddle_wire_message_t message, uint64_t time_us)
 {
-    inbox->born_us[message] = time_us;
+    inbox->age_from_us[message] = time_us;
     inbox->came |= 1u << message;
 }
 
@@ -31,7 +31,7 @@ void saddle_inbox_take_command(saddle_inbox_t *inbox, saddle_source_t source,
         inbox->authority = source;
         inbox->input.command = *command;
         ++inbox->commands_applied;
-        note_birth(inbox, SADDLE_WIRE_COMMAND, time_us);
+        note_age(inbox, SADDLE_WIRE_COMMAND, time_us);
     }
 }
 
@@ -53,30 +53,30 @@ static void take_time(saddle_inbox_t *inbox, const uint8_t *data, uint64_t time_
 
 /** From when the age of what came at time_us counts. False: it is of no use. */
 static bool is_newer(saddle_inbox_t *inbox, saddle_wire_message_t message, const uint8_t *data,
-                     uint64_t time_us, uint64_t *born_us)
+                     uint64_t time_us, uint64_t *age_from_us)
 {
-    *born_us = time_us;
+    *age_from_us = time_us;
     inbox->sender_clock = !inbox->lockstep && saddle_sender_clock_runs(&inbox->clock, time_us);
     if (!inbox->sender_clock) {
         return true;
     }
-    const bool known =
-        saddle_sender_clock_sampled(&inbox->clock, saddle_wire_set_number(data), time_us, born_us);
-    const uint64_t held_us = inbox->born_us[message];
-    return known && (*born_us >= held_us || held_us > time_us);
+    const bool known = saddle_sender_clock_sampled(&inbox->clock, saddle_wire_set_number(data),
+                                                   time_us, age_from_us);
+    const uint64_t held_us = inbox->age_from_us[message];
+    return known && (*age_from_us >= held_us || held_us > time_us);
 }
 
 static void take_measured(saddle_inbox_t *inbox, saddle_wire_message_t message, const uint8_t *data,
                           uint64_t time_us)
 {
     const uint8_t counter = saddle_wire_counter(data);
-    uint64_t born_us;
-    if (!is_newer(inbox, message, data, time_us, &born_us)) {
+    uint64_t age_from_us;
+    if (!is_newer(inbox, message, data, time_us, &age_from_us)) {
         ++inbox->frames_late;
         return;
     }
     saddle_wire_decode_measured(message, data, &inbox->input.measurement);
-    note_birth(inbox, message, born_us);
+    note_age(inbox, message, age_from_us);
     if (counter != inbox->set_counter) {
         inbox->set = 0;
         inbox->set_counter = counter;
@@ -109,8 +109,8 @@ static uint32_t age_us(const saddle_inbox_t *inbox, saddle_wire_message_t messag
     if ((inbox->came & 1u << message) == 0u) {
         return SADDLE_AGE_NEVER_US;
     }
-    const uint64_t born_us = inbox->born_us[message];
-    const uint64_t age = time_us > born_us ? time_us - born_us : 0;
+    const uint64_t age_from_us = inbox->age_from_us[message];
+    const uint64_t age = time_us > age_from_us ? time_us - age_from_us : 0;
     return age < SADDLE_AGE_NEVER_US ? (uint32_t)age : SADDLE_AGE_NEVER_US - 1u;
 }
 

@@ -31,8 +31,8 @@ typedef struct {
     bool lockstep;        /**< set by the port: what came is of age 0, whatever its time is */
     bool sender_clock;    /**< the last measurement's age counts from when it was sampled */
     uint32_t frames_late; /**< measured before what is held, or too long ago to know when */
-    uint64_t born_us[SADDLE_WIRE_MESSAGE_COUNT]; /**< from when its age counts */
-    uint32_t came;                               /**< bits of the messages received so far */
+    uint64_t age_from_us[SADDLE_WIRE_MESSAGE_COUNT]; /**< from when its age counts */
+    uint32_t came;                                   /**< bits of the messages received so far */
     uint32_t set; /**< bits of the messages with set_counter since the last read */
     uint8_t set_counter;
     uint32_t commands_applied;

@@ -14,6 +14,7 @@
 /** Half of what a difference of the sender's times can tell from a step back. */
 #define LONGEST_SILENCE_US (UINT64_C(1) << 30)
 
+/** A sender that has given no time for so long has no clock: ages count from reception again. */
 #define CLOCKLESS_US 10000000u
 
 static void begin(saddle_sender_clock_t *clock, uint8_t number, uint32_t sampled_us,

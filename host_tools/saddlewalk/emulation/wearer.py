@@ -328,11 +328,15 @@ class Wearer:
     def _is_first_swing(self) -> bool:
         return math.isinf(self._since_landing_s)
 
-    def step(self) -> None:
-        """Advance by STEP_S."""
+    def _advance_time(self) -> None:
+        """By a step, from the first plan on."""
         if self._started:
             self._steps += 1
             self.time_s = self._steps * STEP_S
+
+    def step(self) -> None:
+        """Advance by STEP_S."""
+        self._advance_time()
         if self.fallen:
             return
         self._plan_age_s += STEP_S

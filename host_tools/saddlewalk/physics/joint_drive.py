@@ -14,25 +14,18 @@ import mujoco
 import numpy as np
 
 from saddlewalk import joints
-from saddlewalk.config import ANKLES
 from saddlewalk.contract import GRAVITY_M_S2, LEFT, RIGHT
 from saddlewalk.core import ffi
 from saddlewalk.emulation.wearer import STEP_S, Measurement, Noise, Plan, Push
+from saddlewalk.physics.body import WINTER_FIELDS
 from saddlewalk.physics.plant import Plant
-from saddlewalk.physics.poses import Pose
-from saddlewalk.physics.wearer import CONTACT_N, POSE_STEPS, SIDES, PhysicalWearer
+from saddlewalk.physics.wearer import CONTACT_N, SIDES, PhysicalWearer
 
 STANDS_FIRST_S = 2.0  # before the first plan: tilt and bias of the gyroscope are found
 LEG_JOINTS = 6
 
-# Fields of saddle_config_t with which the gains of firmware/joints were found: straighter knees
-# than WINTER_FIELDS has.
-FIELDS: Mapping[str, float | int] = {
-    "ankle": ANKLES["cycloid"],
-    "swing_approach": 0.3,
-    "pendulum_ratio": 0.545,
-    "step_width_fast_m": 0.16,
-}
+# The gains of firmware/joints were found with straighter knees.
+FIELDS: Mapping[str, float | int] = {**WINTER_FIELDS, "pendulum_ratio": 0.545}
 
 
 @dataclass(frozen=True)
@@ -157,9 +150,7 @@ class JointWearer(PhysicalWearer):
         return table.reshape(2 * LEG_JOINTS, -1).T.astype(float)
 
     def step(self) -> None:
-        if self._started:
-            self._steps += 1
-            self.time_s = self._steps * STEP_S
+        self._advance_time()
         if self.fallen:
             return
         self._renew_plan()
@@ -173,8 +164,7 @@ class JointWearer(PhysicalWearer):
         for side, foot in enumerate(self.feet):
             foot.contact = self.plant.loads_n[side] > CONTACT_N
         self._seen.append(self._exact_now())
-        if self.poses is not None and self._steps % POSE_STEPS == 0:
-            self.poses.append(Pose(self.time_s, self.plant.data.qpos.copy()))
+        self._record_pose()
 
     def _note_reference(self) -> None:
         """Where the C library has the plan's frame, against the foot that it measures from."""

@@ -92,9 +92,7 @@ class PhysicalWearer(emulation.Wearer):
         self._started = self._started or plan is not None
 
     def step(self) -> None:
-        if self._started:
-            self._steps += 1
-            self.time_s = self._steps * STEP_S
+        self._advance_time()
         if self.fallen:
             return
         if self._until_control == 0:
@@ -108,6 +106,9 @@ class PhysicalWearer(emulation.Wearer):
         if sensed:
             self._sense()
             self._seen.append(self._exact_now())
+        self._record_pose()
+
+    def _record_pose(self) -> None:
         if self.poses is not None and self._steps % POSE_STEPS == 0:
             self.poses.append(Pose(self.time_s, self.plant.data.qpos.copy()))
 

@@ -83,7 +83,7 @@ typedef struct {
     float cop_leave;            /**< and where it leaves it, [E39] */
     float landing_early_s; /**< a foot that lands sooner by no more carries then; 0: none, [E43] */
     float landing_late_s;  /**< and one that is late is waited for so long */
-    float placement_gain;  /**< of what the ankles can mend of the XCoM's departure, the landing
+    float placement_gain;  /**< of what the ankles can correct of the XCoM's departure, the landing
                                 follows so much, and of the rest recovery_follow; 0: it stays
                                 where it is planned, [E45] */
     float tick_max_s;      /**< the plan advances by no more than this in one tick */

@@ -177,7 +177,7 @@ static void compare_step(const saddle_model_t *model, const saddle_wearer_t *wea
 }
 
 /* [E45] The recovery step from the reference's XCoM, which a wearer on the plan keeps to; and a share of
- * what the ankles can mend. */
+ * what the ankles can correct. */
 static SADDLE_NOINLINE void place_landing(const saddle_model_t *model,
                                           const saddle_wearer_t *wearer,
                                           const saddle_intent_t *intent,
@@ -189,11 +189,11 @@ static SADDLE_NOINLINE void place_landing(const saddle_model_t *model,
     const saddle_vec2_t departure_m = saddle_vec2_sub(xcom_m, intent->reference_xcom_m);
     const saddle_vec2_t least_m =
         least_deviation_m(model, departure_m, compared->trailing_m, &compared->growth);
-    const saddle_vec2_t mended_m =
+    const saddle_vec2_t corrected_m =
         saddle_vec2_sub(saddle_vec2_scale(compared->growth.factor, departure_m), least_m);
     saddle_recovery_target_t target = compared->target;
     target.departure_m = least_m;
-    target.placement_m = saddle_vec2_scale(model->config.placement_gain, mended_m);
+    target.placement_m = saddle_vec2_scale(model->config.placement_gain, corrected_m);
     saddle_recovery_t step;
     saddle_recovery_step(model, &target, &step);
     placement->known = step.found;

@@ -154,7 +154,7 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     saddle_score_posture(model, &posture, scores, &support);
     const uint32_t faults = sensed->faults | saddle_score_faults(known, scores);
     bool on_plan = false;
-    verdict->compared = verdict->on_track = false;
+    verdict->compared = verdict->on_track = false; /* whatever the output held before */
     verdict->recovery.found = verdict->recovery.stops = false;
     supervisor->placement.known = false;
     if (is_measured(known) && scores->bos.defined) {
