@@ -49,7 +49,7 @@ void setUp(void)
 
 void tearDown(void) {}
 
-/* The body of the plan: its feet, and its XCoM but for the error. */
+/* The body of the plan: its feet, and its XCoM but for the error. At rest before the first plan. */
 static void pose(void)
 {
     const saddle_vec2_t com = plan.reference.com_m;
@@ -62,8 +62,10 @@ static void pose(void)
     }
     const float time_s = sqrtf(plan.com_m.z / SADDLE_GRAVITY_M_S2);
     saddle_com_t wanted = {{com.x, com.y, plan.com_m.z}, {0.0f, 0.0f, 0.0f}};
-    wanted.velocity_m_s.x = (plan.reference.xcom_m.x + xcom_error_m.x - com.x) / time_s;
-    wanted.velocity_m_s.y = (plan.reference.xcom_m.y + xcom_error_m.y - com.y) / time_s;
+    if (time_s > 0.0f) {
+        wanted.velocity_m_s.x = (plan.reference.xcom_m.x + xcom_error_m.x - com.x) / time_s;
+        wanted.velocity_m_s.y = (plan.reference.xcom_m.y + xcom_error_m.y - com.y) / time_s;
+    }
     estimate.trunk.hips_m = (saddle_vec3_t){com.x, com.y, plan.com_m.z - 0.1f};
     estimate.trunk.axes = WORLD;
     (void)saddle_inverse_of_com(&legs, &wanted, foot, &estimate.trunk, &estimate.joints);
