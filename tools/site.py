@@ -3,26 +3,21 @@
 
 usage: tools/site.py OUT_FOLDER
 
-Needs `make build`, and the extra `site`. A link that leads nowhere is an error.
+Needs `make build`, the extra `site` and doxygen. A link that leads nowhere is an error.
 """
 
-import argparse
 import os
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 
-import cantools
-
-from saddlewalk import cli, config, contract, core
-from saddlewalk.verdict import REASON_WORDS
+from c_headers import LIBRARIES, entries
+from site_reference import WRITTEN
 
 ROOT = Path(__file__).resolve().parents[1]
-TYPES = ROOT / "firmware/core/include/saddlewalk/types.h"
 LINK = re.compile(r"(!?)\[([^\]]+)\]\(([^)#\s]+)(#[^)]*)?\)")
 FRONT = {
     "README.md": "index.md",
@@ -38,10 +33,12 @@ def main() -> None:
         shutil.copytree(ROOT / "docs", pages)
         for name, page in FRONT.items():
             (pages / page).write_text((ROOT / name).read_text().replace("](docs/", "]("))
-        for name, written in REFERENCE.items():
-            (pages / f"reference-{name}.md").write_text(written())
+        for name, written in WRITTEN.items():
+            (pages / f"{name}.md").write_text(written())
+        targets = _targets(pages)
         for page in pages.glob("*.md"):
-            page.write_text(LINK.sub(lambda link: _link(link, pages), page.read_text()))
+            text = LINK.sub(lambda link: _link(link, pages), page.read_text())
+            page.write_text(_with_links(text, targets))
         playground = ROOT / "build/playground.html"
         if playground.exists():
             shutil.copy(playground, pages)
@@ -50,8 +47,10 @@ def main() -> None:
         settings = Path(folder) / "mkdocs.yml"
         settings.write_text((ROOT / "tools/mkdocs.yml").read_text())
         mkdocs = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet"]
-        quiet = {**os.environ, "NO_MKDOCS_2_WARNING": "1", "DISABLE_MKDOCS_2_WARNING": "true"}
-        subprocess.run([*mkdocs, "-f", settings, "-d", out], check=True, env=quiet)
+        read = {"HOST_TOOLS": str(ROOT / "host_tools")}
+        quiet = {"NO_MKDOCS_2_WARNING": "1", "DISABLE_MKDOCS_2_WARNING": "true"}
+        environment = os.environ | read | quiet
+        subprocess.run([*mkdocs, "-f", settings, "-d", out], check=True, env=environment)
     for page in out.glob("*.html"):
         text = page.read_text()
         elsewhere = re.search(r'<(?:script|link|img)[^>]* (?:src|href)="https?:[^"]*"', text)
@@ -72,112 +71,37 @@ def _link(link: re.Match[str], pages: Path) -> str:
     return text
 
 
-# ---- the reference
+# An equation's row; what stays as it is; an equation's tag; a name of the C interface.
+ROW = re.compile(r"^\| \[([EJ]\d+)\] \|", re.MULTILINE)
+STAYS = r"^```.*?^```$|^#[^\n]*|\[[^\]\n]*\]\([^)\n]*\)"
+REFERS = re.compile(
+    rf"{STAYS}|`(?P<code>saddle_\w+)(?:\(\))?`|`[^`\n]*`|\[(?P<tag>[EJ]\d+)\]|\b(?P<name>saddle_\w+)(?:\(\))?",
+    re.MULTILINE | re.DOTALL,
+)
 
 
-def _table(head: str, rows: list[list[str]]) -> str:
-    cells = [head.split("|"), ["---"] * (head.count("|") + 1), *rows]
-    return "\n".join(f"| {' | '.join(str(cell).strip() for cell in row)} |" for row in cells) + "\n"
+def _targets(pages: Path) -> dict[str, str]:
+    """Where each equation and each name of the C interface is explained."""
+    found = {
+        tag: f"{page}#{tag.lower()}"
+        for page in ("equations.md", "joints.md")
+        for tag in ROW.findall((pages / page).read_text())
+    }
+    for library in LIBRARIES:
+        found |= {name: f"reference-c-{library}.md#{name.lower()}" for name in entries(library)}
+    return found
 
 
-def _comments(prefix: str) -> dict[str, str]:
-    """What types.h says beside each enumerator."""
-    text = TYPES.read_text()
-    found = re.findall(rf"\b{prefix}(\w+) = [^,/]*,?\s*/\*\*< (.*?)\*/", text, re.DOTALL)
-    return {name: " ".join(words.split()) for name, words in found}
+def _with_links(text: str, targets: dict[str, str]) -> str:
+    def linked(found: re.Match[str]) -> str:
+        target = targets.get(found["code"] or found["tag"] or found["name"] or "")
+        if target is None:
+            return found[0]
+        return f"[{found['tag'] or found[0]}]({target})"
 
+    text = ROW.sub(lambda row: f'| <a id="{row[1].lower()}"></a>{row[1]} |', text)
+    return REFERS.sub(linked, text)
 
-def configuration() -> str:
-    struct = re.search(r"typedef struct \{([^}]*)\} saddle_config_t;", TYPES.read_text())[1]
-    said = dict(re.findall(r"\bfloat (?:\w+, )*(\w+);\s*(?:/\*\*< (.*?)\*/)?", struct, re.DOTALL))
-    default = config.configuration({})
-    rows = [
-        [
-            f"`{name}`",
-            f"{getattr(default, name):.6g}",
-            f"{low:g} to {high:g}",
-            " ".join(said.get(name, "").split()),
-        ]
-        for name, (low, high) in core.field_ranges().items()
-    ]
-    return (
-        "# Configuration\n\nThe fields of `saddle_config_t`, for `--config`, `--set` and C. The "
-        "default is that of a body of 1.79 m and 63.3 kg.\n\n"
-        + _table("field|default|accepted|meaning", rows)
-    )
-
-
-def codes() -> str:
-    parts = ["# Levels, reasons, faults and limits\n"]
-    rows = [[str(n), f"`{name}`", REASON_WORDS[name]] for n, name in enumerate(contract.REASONS)]
-    parts += ["## Reasons\n", _table("code|reason|what it says", rows)]
-    for title, prefix, names in (
-        ("Levels", "SADDLE_LEVEL_", [name.upper() for name in contract.LEVELS]),
-        ("Faults", "SADDLE_FAULT_", contract.FAULTS),
-        ("Limits", "SADDLE_LIMIT_", contract.LIMITS),
-        ("Statuses", "SADDLE_", contract.STATUSES),
-    ):
-        said = _comments(prefix)
-        rows = [[str(n), f"`{name}`", said.get(name, "")] for n, name in enumerate(names)]
-        parts += [f"## {title}\n", _table("bit or code|name|meaning", rows)]
-    return "\n".join(parts)
-
-
-def can() -> str:
-    database = cantools.database.load_file(ROOT / "firmware/wire/saddlewalk.dbc")
-    parts = [f"# CAN messages\n\nWire version {database.version}, from `saddlewalk.dbc`.\n"]
-    for message in database.messages:
-        rows = [
-            [
-                f"`{signal.name}`",
-                f"{signal.start}, {signal.length}",
-                f"{signal.scale:g}",
-                signal.unit or "",
-                (signal.comment or "").replace("\n", " "),
-            ]
-            for signal in message.signals
-        ]
-        parts += [
-            f"## {message.name}\n\nIdentifier 0x{message.frame_id:X}. {message.comment or ''}\n",
-            _table("signal|start, bits|scale|unit|meaning", rows),
-        ]
-    return "\n".join(parts)
-
-
-def lcm() -> str:
-    types = sorted((ROOT / "lcm_types").glob("*.lcm"))
-    return "# LCM types\n\n" + "\n".join(
-        f"## {path.stem}\n\n```c\n{path.read_text()}```\n" for path in types
-    )
-
-
-def commands() -> str:
-    os.environ["COLUMNS"] = "90"
-    (choices,) = (
-        action.choices
-        for action in cli.parser()._actions
-        if isinstance(action, argparse._SubParsersAction)
-    )
-    return "# Commands\n\n" + "\n".join(
-        f"## {name}\n\n```text\n{command.format_help()}```\n" for name, command in choices.items()
-    )
-
-
-def c_interface() -> str:
-    headers = [TYPES.with_name("saddlewalk.h"), TYPES]
-    return "# C interface\n\n" + "\n".join(
-        f"## {path.name}\n\n```c\n{path.read_text()}```\n" for path in headers
-    )
-
-
-REFERENCE: dict[str, Callable[[], str]] = {
-    "commands": commands,
-    "configuration": configuration,
-    "codes": codes,
-    "can": can,
-    "lcm": lcm,
-    "c": c_interface,
-}
 
 if __name__ == "__main__":
     main()

@@ -41,20 +41,20 @@ typedef enum {
  *  override; an all-zero configuration fails the check. Defaults are the paper's. Floats come first,
  *  in the order of saddle_config_field(). */
 typedef struct {
-    float body_mass_kg;
-    float body_height_m;
-    float pendulum_ratio;    /**< pendulum length / body height, [E1] */
-    float cop_range_m;       /**< d_h: CoP to heel and metatarsal pivots, [E11] [E16] */
-    float step_width_slow_m; /**< below step_width_slow_speed_m_s, [E3] */
-    float step_width_fast_m; /**< above step_width_fast_speed_m_s, [E3] */
-    float step_width_slow_speed_m_s;
-    float step_width_fast_speed_m_s;
-    float step_width_slope_s; /**< between the two speeds, [E3] */
-    float step_width_intercept_m;
-    float half_step_slope_s; /**< [E4] */
-    float half_step_intercept_m;
-    float vertical_slope_s; /**< peak-to-peak vertical CoM excursion, [E5] */
-    float vertical_intercept_m;
+    float body_mass_kg;              /**< of the wearer */
+    float body_height_m;             /**< likewise */
+    float pendulum_ratio;            /**< pendulum length / body height, [E1] */
+    float cop_range_m;               /**< d_h: CoP to heel and metatarsal pivots, [E11] [E16] */
+    float step_width_slow_m;         /**< below step_width_slow_speed_m_s, [E3] */
+    float step_width_fast_m;         /**< above step_width_fast_speed_m_s, [E3] */
+    float step_width_slow_speed_m_s; /**< the slower of the two speeds, [E3] */
+    float step_width_fast_speed_m_s; /**< the faster one */
+    float step_width_slope_s;        /**< between the two speeds, [E3] */
+    float step_width_intercept_m;    /**< of that line at speed 0 */
+    float half_step_slope_s;         /**< half a step over the speed, [E4] */
+    float half_step_intercept_m;     /**< and at speed 0 */
+    float vertical_slope_s;     /**< peak-to-peak vertical CoM excursion over the speed, [E5] */
+    float vertical_intercept_m; /**< and at speed 0 */
     float vertical_offset_m; /**< of the mean CoM height, cycloid only; 0: the CoM is at its highest
                                   where the pendulum has it, [E24] */
     float vertical_delay_rad; /**< of the CoM's height, in angle of its own wave, [E24] */
@@ -66,13 +66,13 @@ typedef struct {
     float heel_strike_max_rad;   /**< a larger commanded angle is limited */
     float strike_share; /**< of a step, from passing the stance foot to the heel strike; 0: by the
                              foot's angle, [E38] */
-    float acceleration_m_s2;       /**< largest change of the walking speed */
-    float shift_time_s;            /**< of the weight to the first stance leg, and back */
-    float step_length_factor_left; /**< steps that the left foot makes; 1: symmetric, [E4] */
-    float step_length_factor_right;
-    float step_width_factor_left; /**< left foot to the walking line; 1: symmetric, [E3] */
-    float step_width_factor_right;
-    float swing_clearance_m; /**< height of the swing foot at mid-swing, [E10] */
+    float acceleration_m_s2;        /**< largest change of the walking speed */
+    float shift_time_s;             /**< of the weight to the first stance leg, and back */
+    float step_length_factor_left;  /**< steps that the left foot makes; 1: symmetric, [E4] */
+    float step_length_factor_right; /**< that the right foot makes */
+    float step_width_factor_left;   /**< left foot to the walking line; 1: symmetric, [E3] */
+    float step_width_factor_right;  /**< right foot to it */
+    float swing_clearance_m;        /**< height of the swing foot at mid-swing, [E10] */
     float swing_begin; /**< where the swing foot's way along x begins, in swings since lift-off; */
     float swing_end;   /**< where it ends; */
     float swing_skew;  /**< and how late it comes; 0: the line through stance foot and CoM, [E44] */
@@ -102,13 +102,13 @@ typedef struct {
                                      printed, [E36] */
     float prediction_horizon_s; /**< in an emergency the foot can land within this, [E28] */
     float cop_shift_ap_m;       /**< how far the wearer can move the CoP, [E30]; 0: as printed */
-    float cop_shift_ml_m;
-    float recovery_width_min_m;     /**< a recovery step is at least so wide, [E30] */
-    float recovery_width_max_m;     /**< and at most so wide */
-    float recovery_margin_m;        /**< XCoM inside the landing CoP by this, [E30] */
-    float recovery_follow;          /**< share of the XCoM's departure that the landing follows; 0:
-                                         the nearest place to the planned one, [E30] */
-    float departure_foresight;      /**< how far ahead, of 1 / natural frequency, [E33] */
+    float cop_shift_ml_m;       /**< and across */
+    float recovery_width_min_m; /**< a recovery step is at least so wide, [E30] */
+    float recovery_width_max_m; /**< and at most so wide */
+    float recovery_margin_m;    /**< XCoM inside the landing CoP by this, [E30] */
+    float recovery_follow;      /**< share of the XCoM's departure that the landing follows; 0:
+                                     the nearest place to the planned one, [E30] */
+    float departure_foresight;  /**< how far ahead, of 1 / natural frequency, [E33] */
     float departure_lateral_weight; /**< of a departure across, [E33] */
     float departure_step_share;     /**< of half the distance of the feet: no departure, [E33] */
     float departure_sink_share;     /**< of a sinking CoM's velocity that is, [E33] */
@@ -125,9 +125,9 @@ typedef struct {
     float previous_level;      /**< 1: the level as 0.1.0 decided it, for comparison, [E36] */
     float caution_score;       /**< a score below it is a caution, [E36] */
     float caution_xcom_ap_m;   /**< XCoM off the planned one by more is a caution, [E36] */
-    float caution_xcom_ml_m;
-    float level_hold_ticks; /**< a level holds this long before it is announced */
-    saddle_ankle_t ankle;
+    float caution_xcom_ml_m;   /**< and across */
+    float level_hold_ticks;    /**< a level holds this long before it is announced */
+    saddle_ankle_t ankle;      /**< the model of the ankles, [E12] [E24] */
 } saddle_config_t;
 
 /** One float field of the configuration and the values that saddle_config_check() accepts. */
@@ -160,35 +160,41 @@ typedef struct {
 /** Age of a measurement that never came. */
 #define SADDLE_AGE_NEVER_US UINT32_MAX
 
-/** Each foot and the CoM have their own age at the time of the tick. */
+/** The CoM as measured. */
 typedef struct {
-    struct {
-        float height_m; /**< above the ground */
-        saddle_vec2_t velocity_m_s;
-        uint32_t age_us;
-    } com;
-    struct {
-        saddle_vec2_t cop_m; /**< middle of the sole, relative to the CoM */
-        bool contact;
-        uint32_t age_us;
-    } foot[2];
+    float height_m;             /**< above the ground */
+    saddle_vec2_t velocity_m_s; /**< over the ground */
+    uint32_t age_us;            /**< at the time of the tick, or SADDLE_AGE_NEVER_US */
+} saddle_measured_com_t;
+
+/** A foot as measured. */
+typedef struct {
+    saddle_vec2_t cop_m; /**< middle of the sole, relative to the CoM */
+    bool contact;        /**< on the ground */
+    uint32_t age_us;     /**< at the time of the tick, or SADDLE_AGE_NEVER_US */
+} saddle_measured_foot_t;
+
+/** Each foot and the CoM have their own age. */
+typedef struct {
+    saddle_measured_com_t com;
+    saddle_measured_foot_t foot[2]; /**< by saddle_side_t */
 } saddle_measurement_t;
 
 /** Why an input was not used or gave no score. */
 typedef enum {
-    SADDLE_FAULT_COMMAND = 1u << 0,    /**< not usable: the last good one holds */
-    SADDLE_FAULT_COM_STALE = 1u << 1,  /**< older than com_max_age_s */
-    SADDLE_FAULT_COM_RANGE = 1u << 2,  /**< not finite or absurd */
-    SADDLE_FAULT_LEFT_STALE = 1u << 3, /**< older than foot_max_age_s */
-    SADDLE_FAULT_LEFT_RANGE = 1u << 4,
-    SADDLE_FAULT_RIGHT_STALE = 1u << 5,
-    SADDLE_FAULT_RIGHT_RANGE = 1u << 6,
+    SADDLE_FAULT_COMMAND = 1u << 0,          /**< not usable: the last good one holds */
+    SADDLE_FAULT_COM_STALE = 1u << 1,        /**< older than com_max_age_s */
+    SADDLE_FAULT_COM_RANGE = 1u << 2,        /**< not finite or absurd */
+    SADDLE_FAULT_LEFT_STALE = 1u << 3,       /**< older than foot_max_age_s */
+    SADDLE_FAULT_LEFT_RANGE = 1u << 4,       /**< not finite or absurd */
+    SADDLE_FAULT_RIGHT_STALE = 1u << 5,      /**< as on the left */
+    SADDLE_FAULT_RIGHT_RANGE = 1u << 6,      /**< as on the left */
     SADDLE_FAULT_FEET_TOGETHER = 1u << 7,    /**< CoPs within 1 mm: no saddle space */
     SADDLE_FAULT_SPEED_INFEASIBLE = 1u << 8, /**< v_CoMp cannot be walked: no step scores */
-    SADDLE_FAULT_COM_FROZEN = 1u << 9,   /**< the same bits for com_max_age_s while the feet moved
-                                              otherwise, or a walk was planned */
-    SADDLE_FAULT_LEFT_FROZEN = 1u << 10, /**< the same bits for foot_max_age_s as the CoM moved */
-    SADDLE_FAULT_RIGHT_FROZEN = 1u << 11,
+    SADDLE_FAULT_COM_FROZEN = 1u << 9,     /**< the same bits for com_max_age_s while the feet moved
+                                                otherwise, or a walk was planned */
+    SADDLE_FAULT_LEFT_FROZEN = 1u << 10,   /**< the same bits for foot_max_age_s as the CoM moved */
+    SADDLE_FAULT_RIGHT_FROZEN = 1u << 11,  /**< as on the left */
     SADDLE_FAULT_AIRBORNE = 1u << 12,      /**< both feet in the air for longer than flight_max_s */
     SADDLE_FAULT_FEET_CROSSED = 1u << 13,  /**< by more than crossing_max_m */
     SADDLE_FAULT_COMMAND_STALE = 1u << 14, /**< no usable one for command_max_age_s */
@@ -317,8 +323,8 @@ typedef struct {
 
 /** How far the wearer is from falling, [E31]. */
 typedef enum {
-    SADDLE_LEVEL_UNKNOWN = 0,
-    SADDLE_LEVEL_STABLE = 1,
+    SADDLE_LEVEL_UNKNOWN = 0, /**< no input, or nobody was seen to walk: the reason says which */
+    SADDLE_LEVEL_STABLE = 1,  /**< walks as usual */
     SADDLE_LEVEL_CAUTION = 2, /**< departs further from the usual walk than steady steps do */
     SADDLE_LEVEL_UNSTABLE = 3 /**< no margin is left: a fall is likely */
 } saddle_level_t;
@@ -390,7 +396,7 @@ typedef struct {
 
 /** Did the call work? Whether there is an answer is in plan.valid and scores.valid. */
 typedef enum {
-    SADDLE_OK = 0,
+    SADDLE_OK = 0,                  /**< the output is complete */
     SADDLE_ERROR_NULL = 1,          /**< an argument is NULL */
     SADDLE_ERROR_CONFIG = 2,        /**< saddle_config_check() names the field */
     SADDLE_ERROR_UNINITIALISED = 3, /**< saddle_init() has not succeeded on this context */
