@@ -774,6 +774,33 @@ static void test_reference_of_another_time_or_no_plan_is_rejected(void)
                           saddle_reference_after(&context, &plan, 0.1f, &reference));
 }
 
+/* A bit of the memory that flips, or code that writes where it should not. */
+static void test_a_damaged_context_gives_no_number_that_is_not_finite(void)
+{
+    float *const damaged[] = {&context.planner.cycle.last_step_m.x,
+                              &context.supervisor.learning.walk.step_time_s};
+    const saddle_context_t sound = context;
+    for (size_t i = 0; i < COUNT_OF(damaged); i++) {
+        context = sound;
+        *damaged[i] = NAN;
+        TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NUMBER, tick_at(80000));
+        assert_hold(SADDLE_ERROR_NUMBER);
+        TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
+        TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(0));
+    }
+}
+
+static void test_a_damaged_context_gives_no_such_plan(void)
+{
+    saddle_plan_t plan;
+    tick_at(0);
+    context.planner.cycle.last_step_m.x = INFINITY;
+    memset(&plan, 0xA5, sizeof plan);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NUMBER, saddle_plan_at(&context, 0, &plan));
+    TEST_ASSERT_FALSE(plan.valid);
+    ASSERT_SAME_FLOAT(0.0f, plan.last_step_m.x);
+}
+
 static void test_plan_at_beyond_its_span_is_rejected(void)
 {
     saddle_plan_t plan;
@@ -1145,6 +1172,8 @@ int main(void)
     RUN_TEST(test_any_bytes_in_any_configuration_give_a_sound_output);
     RUN_TEST(test_plan_at_is_the_next_ticks_plan_bit_for_bit);
     RUN_TEST(test_plan_at_of_a_steady_walk_is_the_next_ticks_in_every_field);
+    RUN_TEST(test_a_damaged_context_gives_no_number_that_is_not_finite);
+    RUN_TEST(test_a_damaged_context_gives_no_such_plan);
     RUN_TEST(test_plan_at_beyond_its_span_is_rejected);
     RUN_TEST(test_reference_at_once_is_the_plan_s);
     RUN_TEST(test_reference_goes_on_without_a_jump_from_standing_on);

@@ -2,6 +2,7 @@
 #include "balance/scores.h"
 #include "balance/supervisor.h"
 #include "math/bytes.h"
+#include "math/finite.h"
 #include "math/rounding.h"
 #include "math/vec2.h"
 #include "model/model.h"
@@ -176,6 +177,14 @@ static void move_landing(saddle_context_t *context, saddle_plan_t *plan)
     }
 }
 
+/* The output of a tick that failed: nothing in it is valid. */
+static saddle_status_t refuse(saddle_output_t *output, saddle_status_t status)
+{
+    saddle_clear(output, sizeof *output);
+    output->status = status;
+    return status;
+}
+
 saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
                             saddle_output_t *output)
 {
@@ -184,9 +193,7 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     }
     const saddle_status_t status = check_call(context, input);
     if (status != SADDLE_OK) {
-        saddle_clear(output, sizeof *output);
-        output->status = status;
-        return status;
+        return refuse(output, status);
     }
     output->status = SADDLE_OK;
     output->limits = 0;
@@ -201,7 +208,7 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     plan_walk(context, &sensed, stop, dt_us, output);
     supervise(context, &sensed, output);
     move_landing(context, &output->plan);
-    return SADDLE_OK;
+    return saddle_output_finite(output) ? SADDLE_OK : refuse(output, SADDLE_ERROR_NUMBER);
 }
 
 saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *command)
@@ -247,6 +254,12 @@ static saddle_status_t check_plan_at(const saddle_context_t *context, uint64_t t
     return SADDLE_OK;
 }
 
+static saddle_status_t refuse_plan(saddle_plan_t *plan, saddle_status_t status)
+{
+    saddle_clear(plan, sizeof *plan);
+    return status;
+}
+
 saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
                                saddle_plan_t *plan)
 {
@@ -255,14 +268,13 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
     }
     const saddle_status_t status = check_plan_at(context, time_us);
     if (status != SADDLE_OK) {
-        saddle_clear(plan, sizeof *plan);
-        return status;
+        return refuse_plan(plan, status);
     }
     saddle_planner_t planner;
     saddle_copy(&planner, &context->planner, sizeof planner);
     advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
     saddle_plan_write(&planner, &context->model, plan);
-    return SADDLE_OK;
+    return saddle_plan_finite(plan) ? SADDLE_OK : refuse_plan(plan, SADDLE_ERROR_NUMBER);
 }
 
 saddle_status_t saddle_reference_after(const saddle_context_t *context, const saddle_plan_t *plan,

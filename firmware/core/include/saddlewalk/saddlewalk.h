@@ -46,7 +46,8 @@ bool saddle_command_usable(const saddle_command_t *command);
 
 /** One update. Writes all of *output on every path, unless output is NULL; on an error (its return
  *  value, also in output->status) nothing in it is valid. For the first tick after saddle_init() no
- *  time has passed. No loops over data; docs/costs.md has the cost. The three must not overlap. */
+ *  time has passed. Every number of an output is finite: were one not, the tick would be a
+ *  SADDLE_ERROR_NUMBER. No loops over data; docs/costs.md has the cost. The three must not overlap. */
 saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *input,
                             saddle_output_t *output);
 
@@ -57,7 +58,8 @@ saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *c
 
 /** The plan at time_us, from the last tick's time to the end of the next step (0.5 s while
  *  standing), under the command of the last tick; for a faster joint controller. Does not
- *  touch the context. SADDLE_ERROR_TIME, and a plan that is not valid, outside that span. */
+ *  touch the context. SADDLE_ERROR_TIME, and a plan that is not valid, outside that span;
+ *  SADDLE_ERROR_NUMBER as for a tick. */
 saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
                                saddle_plan_t *plan);
 

@@ -403,8 +403,10 @@ typedef enum {
     SADDLE_ERROR_TIME = 4,          /**< time_us went backwards: no plan, no scores, state kept,
                                          until it has caught up or saddle_init() starts over */
     SADDLE_ERROR_COMMAND = 5,       /**< saddle_join() needs a walk with a speed > 0 */
-    SADDLE_ERROR_BUILD = 6          /**< the core's flags, or the processor's rounding mode, break
+    SADDLE_ERROR_BUILD = 6,         /**< the core's flags, or the processor's rounding mode, break
                                          its bits; docs/porting.md names those to use */
+    SADDLE_ERROR_NUMBER = 7 /**< a result is not finite: the context is damaged, by a fault of
+                                 its memory or by other code; saddle_init() starts over */
 } saddle_status_t;
 
 typedef struct {
