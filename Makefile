@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller coverage prove fuzz mutants soak test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground site release samples physics bench-baselines format lint clean help
+.PHONY: build demo amalgamation controller coverage prove fuzz mutants soak test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground fmu site release samples physics bench-baselines format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -22,10 +22,13 @@ playground: build build-wasm32/build.ninja ## the core in a page that needs noth
 	@$(BIN)/ninja -C build-wasm32 --quiet playground
 	@$(BIN)/python -m saddlewalk.view.playground build-wasm32/bin/playground.wasm build/playground.html
 
+fmu: build ## the core as an FMU for Simulink, OpenModelica or Dymola, build/saddlewalk.fmu
+	@$(BIN)/ninja -C build --quiet fmu
+
 site: playground .venv/installed-site ## the documentation as a site, build/site/index.html
 	@$(BIN)/python tools/site.py build/site
 
-release: site ## wheel, sources, site and playground of a clean tag, in build/release
+release: site fmu ## wheel, sources, site, playground and FMU of a clean tag, in build/release
 	@$(BIN)/python tools/release.py build/release
 
 cross-compiler:
@@ -33,7 +36,7 @@ cross-compiler:
 		{ echo "saddlewalk: missing: a compiler and a C library for Cortex-M; as root:" \
 			"apt-get install -y gcc-arm-none-eabi picolibc-arm-none-eabi" >&2; exit 1; }
 
-test: build/build.ninja .venv/installed-test ## every test that this machine can run in minutes
+test: build/build.ninja .venv/installed-test fmu ## every test that this machine can run in minutes
 	$(call run_tests,build,release,,$(MINUTES))
 	@echo "Left out, with targets of their own: test-exhaustive test-flood test-memory test-socketcan test-targets"
 
@@ -118,7 +121,7 @@ format: .venv/installed-test ## lay out the Python and C code
 	@$(BIN)/ruff format --quiet .
 	@git ls-files '*.c' '*.h' | xargs $(BIN)/clang-format -i
 
-lint: build/build.ninja .venv/installed-test ## ruff, and clang-tidy over the firmware that this build compiles; make test checks layout and types
+lint: build/build.ninja .venv/installed-test fmu ## ruff, and clang-tidy over the firmware that this build compiles; make test checks layout and types
 	@$(BIN)/ruff check --quiet .
 	@$(BIN)/ruff format --quiet --check .
 	@$(BIN)/ninja -C build --quiet

@@ -129,6 +129,7 @@ def main() -> None:
             archive(out / f"saddlewalk-{name}-{VERSION}.{end}", part)
     archive(out / f"saddlewalk-site-{VERSION}.tar.gz", ROOT / "build/site")
     shutil.copy(ROOT / "build/playground.html", out / f"saddlewalk-playground-{VERSION}.html")
+    shutil.copy(ROOT / "build/saddlewalk.fmu", out / f"saddlewalk-{VERSION}.fmu")
     (out / "sbom.cdx.json").write_text(made_of())
     (out / "CHANGES.md").write_text(changes())
     try_wheel(wheel)

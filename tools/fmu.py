@@ -1,0 +1,236 @@
+#!/usr/bin/env python3
+"""The core as an FMU of FMI 2.0: what describes it, and the file.
+
+usage: tools/fmu.py describe OUT_FOLDER BUILD    fmu_variables.h and modelDescription.xml
+       tools/fmu.py pack OUT.fmu DESCRIBED HEADERS LIBRARY CORE
+
+Its variables are the members of the core's structs, by the names that they have in C.
+"""
+
+import hashlib
+import platform
+import re
+import sys
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+import cffi
+from package import CORE, version
+
+PORT = CORE.parent / "port_fmi"
+TYPES = (CORE / "include/saddlewalk/types.h").read_text()
+NEVER_US = 0xFFFFFFFF  # SADDLE_AGE_NEVER_US
+# Members of saddle_fmu_state_t that are seen, how, and which of them have no name in a variable's.
+SHOWN = (
+    ("config", "saddle_config_t", "parameter", True),
+    ("input.command", "saddle_command_t", "input", False),
+    ("input.command_age_us", "uint32_t", "input", False),
+    ("input.measurement", "saddle_measurement_t", "input", False),
+    ("output", "saddle_output_t", "output", False),
+    ("planned", "saddle_scores_t", "output", True),
+)
+STEADY_START = "begin in a steady walk, at the left foot via point, instead of from standing"
+# C type to the C code's kind and FMI's type. Integers that are too large for FMI's are real there.
+KINDS = {
+    "float": ("FLOAT", "Real"),
+    "uint8_t": ("BYTE", "Integer"),
+    "uint32_t": ("WORD", "Integer"),
+    "int64_t": ("LONG", "Real"),
+    "_Bool": ("FLAG", "Boolean"),
+}
+UNITS = {
+    "_m_s2": ("m/s2", {"m": "1", "s": "-2"}),
+    "_m_s": ("m/s", {"m": "1", "s": "-1"}),
+    "_rad": ("rad", {"rad": "1"}),
+    "_kg": ("kg", {"kg": "1"}),
+    "_nm": ("nm", {"m": "1", "factor": "1e-9"}),
+    "_us": ("us", {"s": "1", "factor": "1e-6"}),
+    "_m": ("m", {"m": "1"}),
+    "_s": ("s", {"s": "1"}),
+    "_n": ("N", {"kg": "1", "m": "1", "s": "-2"}),
+    "_j": ("J", {"kg": "1", "m": "2", "s": "-2"}),
+}
+
+
+@dataclass
+class Variable:
+    path: str  # in saddle_fmu_state_t
+    name: str
+    kind: str
+    type: str  # FMI's
+    causality: str
+    text: str
+    start: str | None = None
+
+    @property
+    def unit(self) -> str | None:
+        named = re.sub(r"(\.[xyz]|\[\d\])+$", "", self.name)
+        return next((unit for end, (unit, _) in UNITS.items() if named.endswith(end)), None)
+
+
+def said(struct: str, member: str) -> str:
+    """What types.h says beside a member."""
+    body = re.search(rf"typedef struct {{([^}}]*)}} {struct};", TYPES)[1]
+    found = re.search(rf"\b{member}\b[^;]*;\s*(?:/\*\*<(.*?)\*/)?", body, re.DOTALL)
+    return " ".join((found[1] or "").split())
+
+
+def leaves(declared: Any, path: str, text: str = "") -> Iterator[tuple[str, Any, str]]:
+    """(path, C type, comment) of each number in a C type."""
+    if declared.kind == "struct":
+        for member, field in declared.fields:
+            own = said(declared.cname, member)
+            yield from leaves(field.type, f"{path}.{member}", own or text)
+    elif declared.kind == "array":
+        for index in range(declared.length):
+            yield from leaves(declared.item, f"{path}[{index}]", text)
+    else:
+        yield path, declared, text
+
+
+def variables(build: Path) -> list[Variable]:
+    ffi = cffi.FFI()
+    ffi.cdef((build / "saddlewalk_cdef.h").read_text())
+    library = ffi.dlopen(str(build / "lib/libsaddlewalk.so"))
+    found = [Variable("steady_start", "steady_start", "FLAG", "Boolean", "parameter", STEADY_START)]
+    found[0].start = "false"
+    default = library.saddle_config_default(1.79, 63.3)
+    for shown, type_name, causality, named in SHOWN:
+        for path, declared, text in leaves(ffi.typeof(type_name), shown):
+            name = path if named else path.partition(".")[2]
+            kind, type_ = KINDS["uint32_t" if declared.kind == "enum" else declared.cname]
+            if name.endswith("_us"):
+                type_ = "Real"
+            variable = Variable(path, name, kind, type_, causality, text)
+            if causality == "parameter":
+                variable.start = f"{getattr(default, path.partition('.')[2]):.9g}"
+            elif causality == "input":
+                variable.start = "false" if type_ == "Boolean" else start_of_input(name)
+            found.append(variable)
+    return found
+
+
+def start_of_input(name: str) -> str:
+    """Stand, and nothing measured."""
+    return str(NEVER_US) if name.startswith("measurement") and name.endswith("age_us") else "0"
+
+
+def table(found: list[Variable], guid: str) -> str:
+    """The C code's table: the order is that of the value references."""
+    rows = "".join(
+        f"    {{offsetof(saddle_fmu_state_t, {v.path}), {v.kind}, "
+        f"{v.type.upper()}, {v.causality.upper()}}},\n"
+        for v in found
+    )
+    return (
+        "/* Generated by tools/fmu.py. */\n"
+        f'#define SADDLE_FMU_GUID "{guid}"\n\n'
+        f"static const variable_t variables[] = {{\n{rows}}};\n"
+    )
+
+
+def description(found: list[Variable], guid: str) -> bytes:
+    root = Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName="saddlewalk",
+        guid=guid,
+        version=version(),
+        description="Walking planner and balance supervisor",
+        license="Apache-2.0",
+        variableNamingConvention="structured",
+    )
+    slave = SubElement(
+        root,
+        "CoSimulation",
+        modelIdentifier="saddlewalk",
+        canHandleVariableCommunicationStepSize="true",
+        canNotUseMemoryManagementFunctions="true",
+        canGetAndSetFMUstate="true",
+        canSerializeFMUstate="true",
+    )
+    sources = SubElement(slave, "SourceFiles")
+    for name in ("fmu.c", "saddlewalk.c"):
+        SubElement(sources, "File", name=name)
+    units = SubElement(root, "UnitDefinitions")
+    for unit, base in UNITS.values():
+        SubElement(SubElement(units, "Unit", name=unit), "BaseUnit", base)
+    SubElement(root, "DefaultExperiment", startTime="0", stopTime="10", stepSize="0.08")
+    listed = SubElement(root, "ModelVariables")
+    for reference, variable in enumerate(found):
+        add_variable(listed, reference, variable)
+    structure = SubElement(root, "ModelStructure")
+    for part in ("Outputs", "InitialUnknowns"):
+        unknown = SubElement(structure, part)
+        for index, variable in enumerate(found, start=1):
+            if variable.causality == "output":
+                SubElement(unknown, "Unknown", index=str(index))
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
+
+
+def add_variable(listed: Element, reference: int, variable: Variable) -> None:
+    scalar = SubElement(
+        listed,
+        "ScalarVariable",
+        name=variable.name,
+        valueReference=str(reference),
+        causality=variable.causality,
+        variability="fixed" if variable.causality == "parameter" else "discrete",
+    )
+    if variable.text:
+        scalar.set("description", variable.text)
+    value = SubElement(scalar, variable.type)
+    if variable.type == "Real" and variable.unit:
+        value.set("unit", variable.unit)
+    if variable.start is not None:
+        value.set("start", variable.start)
+
+
+def describe(out: Path, build: Path) -> None:
+    found = variables(build)
+    guid = hashlib.sha256(description(found, "")).hexdigest()[:32]
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "fmu_variables.h").write_text(table(found, guid))
+    (out / "modelDescription.xml").write_bytes(description(found, guid))
+
+
+def pack(out: Path, described: Path, headers: Path, library: Path, core: Path) -> None:
+    """The description, the library for this platform, and sources for any other."""
+    folder = {"Linux": "linux64", "Darwin": "darwin64"}[platform.system()]
+    files = {
+        "modelDescription.xml": described / "modelDescription.xml",
+        f"binaries/{folder}/saddlewalk{library.suffix}": library,
+        "sources/fmu.c": PORT / "fmu.c",
+        "sources/saddlewalk.c": core,
+        "sources/fmu_variables.h": described / "fmu_variables.h",
+        "sources/timing.h": CORE.parent / "port_common/timing.h",
+        "documentation/licenses/LICENSE": CORE.parents[1] / "LICENSE",
+    }
+    files |= {f"sources/{header.name}": header for header in headers.glob("fmi2*.h")}
+    include = CORE / "include"
+    files |= {f"sources/{h.relative_to(include)}": h for h in include.rglob("*.h")}
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as fmu:
+        for name, path in sorted(files.items()):
+            entry = zipfile.ZipInfo(name)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            fmu.writestr(entry, path.read_bytes())
+
+
+def main(arguments: list[str]) -> None:
+    match arguments:
+        case ["describe", *paths] if len(paths) == 2:
+            describe(*map(Path, paths))
+        case ["pack", *paths] if len(paths) == 5:
+            pack(*map(Path, paths))
+        case _:
+            sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
