@@ -239,7 +239,13 @@ def test_platformio_manifest_is_current_and_builds(walk, tmp_path):
 def test_zephyr_module_builds_under_stand_ins_for_its_functions(walk, tmp_path):
     module = yaml.safe_load((CHECKOUT / "zephyr/module.yml").read_text())
     assert module["name"] == "saddlewalk"
-    assert walk_of("zephyr", tmp_path, MODULE=CHECKOUT / module["build"]["cmake"]) == walk
+    folders = {
+        "MODULE": CHECKOUT / module["build"]["cmake"],
+        "SAMPLE": CHECKOUT / "examples/zephyr",
+    }
+    assert walk_of("zephyr", tmp_path, **folders) == walk
+    readme = (CHECKOUT / "examples/zephyr/README.md").read_text()
+    assert run(tmp_path / "sample").stdout == re.search(r"```text\n(.*?)```", readme, re.DOTALL)[1]
 
 
 @pytest.mark.parametrize("has_fpu", ["y", "n"])
