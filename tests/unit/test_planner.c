@@ -288,17 +288,19 @@ static void test_swing_of_a_person_is_in_the_steady_plan(void)
     }
 }
 
-static void test_heel_strikes_at_its_share_of_a_step(void)
+static void check_heel_strikes_at(double strike_share)
 {
-    config.strike_share = 0.36f;
+    config.strike_share = (float)strike_share;
     for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
         const walk_t walk = walk_at((double)SPEEDS[i]);
         join(SPEEDS[i]);
         double t = 0.0;
         for (int k = 0; k < 100; k++) {
             const expected_t e = expected_at(&walk, t);
-            const double left = e.to_saddle - (0.5 - 0.36) * walk.step_time;
-            if (e.to_saddle > 1e-5 && walk.step_time - e.to_saddle > 1e-5) {
+            const double late = (strike_share - 0.5) * walk.step_time;
+            const double due = e.to_saddle + late - walk.step_time; /* of the step before */
+            const double left = due > 0.0 ? due : e.to_saddle + late;
+            if (e.to_saddle > 1e-5 && walk.step_time - e.to_saddle > 1e-5 && fabs(due) > 1e-5) {
                 TEST_ASSERT_DOUBLE_WITHIN(TOLERANCE * fmax(1.0, 1.0 / walk.speed), fmax(left, 0.0),
                                           plan.time_to_heel_strike_s);
             }
@@ -306,6 +308,16 @@ static void test_heel_strikes_at_its_share_of_a_step(void)
             t += 0.04;
         }
     }
+}
+
+static void test_heel_strikes_at_its_share_of_a_step(void)
+{
+    check_heel_strikes_at(0.36);
+}
+
+static void test_heel_strikes_after_the_foot_carries(void)
+{
+    check_heel_strikes_at(0.58);
 }
 
 static void test_cycloid_beyond_the_ankle_is_reported(void)
@@ -967,6 +979,7 @@ int main(void)
     RUN_TEST(test_shape_is_in_the_steady_plan);
     RUN_TEST(test_swing_of_a_person_is_in_the_steady_plan);
     RUN_TEST(test_heel_strikes_at_its_share_of_a_step);
+    RUN_TEST(test_heel_strikes_after_the_foot_carries);
     RUN_TEST(test_cycloid_beyond_the_ankle_is_reported);
     RUN_TEST(test_toe_off_limit_is_reported);
     RUN_TEST(test_start_change_and_stop_are_smooth_in_every_ankle);

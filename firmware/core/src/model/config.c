@@ -38,7 +38,7 @@ static const saddle_config_field_t FIELDS[] = {
     FIELD(peak_speed_m_s, 0.5f, 3.9f),
     FIELD(ankle_time_constant_s, 0.01f, 1.0f),
     FIELD(heel_strike_max_rad, 0.0f, 1.0f),
-    FIELD(strike_share, 0.0f, 0.5f),
+    FIELD(strike_share, 0.0f, 0.75f),
     FIELD(acceleration_m_s2, 0.01f, 5.0f),
     FIELD(shift_time_s, 0.1f, 10.0f),
     FIELD(step_length_factor_left, 0.5f, 1.5f),

@@ -57,6 +57,22 @@ static float time_of_last_swing_s(const saddle_cycle_t *cycle, float distance_m)
                             : 0.0f;
 }
 
+/* Of the CoM until the next heel strike. One that comes after its landing, [E38], is due for a while. */
+static float way_to_heel_strike_m(const saddle_cycle_t *cycle, const saddle_model_t *model,
+                                  float distance_m, float half_step_m)
+{
+    const bool before = saddle_cycle_before_landing(cycle);
+    const float quarter_m = cycle->quarter.length_m;
+    const float late_m = -model->body.strike_lead * quarter_m;
+    const float walked_m = quarter_m - distance_m;
+    if (!before && late_m > walked_m) {
+        return late_m - walked_m;
+    }
+    const float landing_m = before ? distance_m : distance_m + half_step_m;
+    const float lead_m = saddle_cycle_strike_lead_m(cycle, model, half_step_m);
+    return landing_m > lead_m ? landing_m - lead_m : 0.0f;
+}
+
 static void write_step_events(const saddle_cycle_t *cycle, const saddle_model_t *model,
                               saddle_plan_t *plan)
 {
@@ -72,8 +88,7 @@ static void write_step_events(const saddle_cycle_t *cycle, const saddle_model_t 
     }
     const float landing_m =
         saddle_cycle_before_landing(cycle) ? distance_m : distance_m + half_step_m;
-    const float lead_m = saddle_cycle_strike_lead_m(cycle, model, half_step_m);
-    const float heel_m = landing_m > lead_m ? landing_m - lead_m : 0.0f;
+    const float heel_m = way_to_heel_strike_m(cycle, model, distance_m, half_step_m);
     const saddle_pace_t pace = saddle_pace(&cycle->profile);
     plan->time_to_via_point_s = saddle_pace_time_s(&pace, distance_m);
     plan->time_to_toe_off_s = saddle_pace_time_s(&pace, landing_m);
