@@ -123,13 +123,50 @@ def test_heel_strikes_at_the_recorded_share_of_the_step(write, tmp_path):
     assert found["strike_share"] == pytest.approx(0.2, abs=0.01)
 
 
-def test_one_step_keeps_the_population_s_delay_and_no_offset(write, tmp_path):
-    person = {"lateral_factor": 0.8, "lateral_delay_rad": 0.18}
-    found = calibrated(tmp_path, write(walk_of(person, 1.0, 1.4)))
-    assert found["lateral_factor"] == pytest.approx(0.8, rel=0.01)
-    assert found["lateral_offset_m"] == 0
-    assert found["lateral_delay_rad"] == pytest.approx(0.18)
-    assert "sway: 1 step, R2 1.00, the population's delay" in (tmp_path / "person.toml").read_text()
+def test_heel_that_strikes_after_the_plan_s_foot_carries(write, tmp_path):
+    walk = Walk(speed_m_s=1.0, step_length_m=0.6).recording()
+    early_s = 0.08 * 0.6  # beyond half a step after the CoM passed the stance foot
+    behind = dataclasses.replace(walk, com_m=walk.com_m + np.array([early_s, 0, 0]))
+    rows = followed(tmp_path, write(behind))
+    assert calibrated(tmp_path, write(behind))["strike_share"] == pytest.approx(0.58, abs=0.01)
+    assert rows["calibrated"]["heel_strike_s"] < 0.005 < rows["default"]["heel_strike_s"]
+
+
+def test_one_step_is_enough(write, tmp_path):
+    """Its path is held to people's by 1 in 40, lengths are its own."""
+    person = {"lateral_factor": 0.8, "lateral_delay_rad": 0.18, "half_step_intercept_m": 0.1}
+    walk = walk_of(person, 1.0, 3.0)
+    cut = {name: getattr(walk, name)[..., 40:240, :] for name in ("com_m", "heel_m", "toe_m")}
+    short = dataclasses.replace(walk, time_s=walk.time_s[40:240], **cut)
+    found = calibrated(tmp_path, write(short))
+    assert "step length: 1 step" in (text := (tmp_path / "person.toml").read_text())
+    assert "sway: 1 step, R2 1.00" in text
+    assert found["lateral_factor"] == pytest.approx(0.8, rel=0.05)
+    assert found["lateral_offset_m"] == pytest.approx(0, abs=1e-3)
+    assert found["lateral_delay_rad"] == pytest.approx(0.18, abs=0.03)
+    assert found["half_step_intercept_m"] == pytest.approx(0.1, abs=0.004)
+    assert found["step_width_intercept_m"] == pytest.approx(0.3456, abs=2e-3)
+
+
+def test_path_is_measured_from_the_line_on_which_the_feet_go_on(write, tmp_path):
+    """A walk that drifts aside by 5 cm a metre; x and y of a foot that lies flat stay."""
+    walk = walk_of({"lateral_offset_m": 0.01}, 1.0)
+    across = np.array([0, 1.0, 0])
+
+    def aside_m(x_m: np.ndarray) -> np.ndarray:
+        return 0.05 * np.expand_dims(x_m, -1) * across
+
+    feet_m = aside_m((walk.heel_m[..., 0] + walk.toe_m[..., 0]) / 2)
+    source = write(moved(walk, com_m=aside_m(walk.com_m[:, 0]), heel_m=feet_m, toe_m=feet_m))
+    assert calibrated(tmp_path, source)["lateral_offset_m"] == pytest.approx(0.01, abs=1e-3)
+    assert followed(tmp_path, source)["calibrated"]["com_y_m"] < 1e-3
+
+
+def test_first_step_that_is_unlike_the_others_does_not_move_their_landing(write, tmp_path):
+    walk = walk_of({}, 1.0, 2.4)
+    shift_m = np.where(walk.time_s < 0.25, 0.25, 0.0)[:, None] * np.array([1.0, 0, 0])
+    rows = followed(tmp_path, write(moved(walk, heel_m=shift_m, toe_m=shift_m)))
+    assert rows["calibrated"]["landing_m"] <= rows["default"]["landing_m"] + 1e-4
 
 
 def test_no_quantity_is_farther_from_the_walk_than_by_default(write, tmp_path):
@@ -562,6 +599,27 @@ def test_follow_leaves_each_recording_out_and_summarises(write, tmp_path, capsys
     assert found["within"]["calibrated"]["y_mm"] == 1
 
 
+def test_halves_of_a_recording_are_followed_by_each_other(write, tmp_path, capsys):
+    """The second half sways farther to the left."""
+    walk = walk_of(PERSON | SHAPE, 1.0)
+    aside_m = np.where(walk.com_m[:, 0] > walk.com_m[-1, 0] / 2, 0.01, 0.0)
+    walks = [write(moved(walk, com_m=aside_m[:, None] * np.array([0, 1.0, 0])))]
+    walks.append(write(walk_of(PERSON, 1.0, 1.4), "short.csv"))
+    out = tmp_path / "follow.json"
+    assert main(["follow", *walks, "--halves", "--json", str(out)]) == 0
+    assert "short.csv: left out: it has no two steps" in capsys.readouterr().err
+    first, second = json.loads(out.read_text())["recordings"]
+    assert [one["recording"] for one in (first, second)] == [
+        "walk.csv, first half",
+        "walk.csv, second half",
+    ]
+    for one in (first, second):
+        assert one["calibrated"]["y_mm"] < 2.5
+        assert one["left_out"]["y_mm"] == pytest.approx(10, abs=1.5)
+        assert one["left_out"]["z_mm"] < 1.5
+    assert "two steps or more" in error_of(capsys, "follow", walks[1], "--halves")
+
+
 def test_film_strip_is_drawn_of_a_stride(write, tmp_path):
     picture = tmp_path / "strip.svg"
     assert main(["follow", write(walk_of(PERSON, 1.0)), "--picture", str(picture)]) == 0
@@ -583,8 +641,10 @@ def test_what_cannot_be_left_out_is_rejected(write, tmp_path, capsys):
     config = tmp_path / "person.toml"
     config.write_text("body_height_m = 1.7\n")
     other = write(walk_of(PERSON, 1.3), "other.csv")
-    arguments = ("--leave-out", "--config", str(config))
-    assert "--config" in error_of(capsys, "follow", walk, other, *arguments)
+    for option in ("--leave-out", "--halves"):
+        arguments = (option, "--config", str(config))
+        assert f"{option} calibrates" in error_of(capsys, "follow", walk, other, *arguments)
+    assert "only one" in error_of(capsys, "follow", walk, other, "--leave-out", "--halves")
 
 
 def test_follow_reports_a_long_name_on_one_line_where_there_is_no_terminal(tmp_path, capsys):

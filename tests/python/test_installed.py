@@ -1,5 +1,6 @@
 """The package from its wheel: without the checkout, without a compiler, in any folder."""
 
+import ast
 import os
 import subprocess
 import sys
@@ -44,6 +45,28 @@ def saddlewalk(site: Path, cwd: Path, *options: str) -> str:
     program = "from saddlewalk.cli import main; raise SystemExit(main())"
     environment = {"PYTHONPATH": str(site), "PATH": "", "HOME": str(cwd)}
     return run(sys.executable, "-c", program, *options, cwd=cwd, env=environment).stdout
+
+
+def imported_at_once(path: Path) -> set[str]:
+    """Packages that a module needs to be imported itself, beside Python's own."""
+    statements = ast.parse(path.read_text()).body
+    plain = [
+        alias.name for line in statements if isinstance(line, ast.Import) for alias in line.names
+    ]
+    chosen = [line.module or "" for line in statements if isinstance(line, ast.ImportFrom)]
+    return {name.split(".")[0] for name in plain + chosen} - sys.stdlib_module_names
+
+
+def test_modules_need_only_what_is_installed_with_the_package():
+    """Those of an extra of their own aside."""
+    named = {"can": "python-can", "markdown_it": "markdown-it-py", "saddlewalk": "saddlewalk"}
+    required = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]["dependencies"]
+    installed = {requirement.split("==")[0] for requirement in required} | {"saddlewalk"}
+    package = CHECKOUT / "host_tools/saddlewalk"
+    for path in package.rglob("*.py"):
+        if path.parent != package / "physics":
+            needed = {named.get(name, name) for name in imported_at_once(path)}
+            assert needed <= installed, path
 
 
 def test_its_platform_is_in_its_name(wheel):

@@ -49,6 +49,12 @@ def add_parser(subparsers: Any) -> None:
         action="store_true",
         help="also calibrate to all recordings but the one that is followed",
     )
+    parser.add_argument(
+        "--halves",
+        action="store_true",
+        help="split each recording's steps in two halves, and calibrate also to one half to follow "
+        "the other: for a person of whom there is one recording",
+    )
     add_output(parser, "--out", metavar="FILE", help="the table as CSV")
     add_output(
         parser, "--json", metavar="FILE", help="errors, medians and shares within the goals as JSON"
@@ -69,9 +75,11 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.gait.motion_capture import load_walk, read_markers
     from saddlewalk.table import write_table
 
-    _check_leave_out(args)
+    _check_left_out(args)
     markers = read_markers(args.markers)
     walks = [measure(load_walk(source, markers)) for source in args.recordings]
+    if args.halves:
+        walks = _halves(walks)
     configurations = _configurations(args, walks)
     followed = follow(walks, configurations, args.hs_angle)
     if args.picture:
@@ -88,13 +96,26 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _check_leave_out(args: argparse.Namespace) -> None:
-    if args.leave_out and args.config:
-        raise UserError("--leave-out calibrates by itself: leave --config out")
+def _check_left_out(args: argparse.Namespace) -> None:
+    if args.leave_out and args.halves:
+        raise UserError("--leave-out and --halves: only one of them")
+    for option, given in (("--leave-out", args.leave_out), ("--halves", args.halves)):
+        if given and args.config:
+            raise UserError(f"{option} calibrates by itself: leave --config out")
     if args.leave_out and len(args.recordings) < 2:
         raise UserError("--leave-out needs two recordings of the same person or more")
     if args.leave_out and len(set(args.recordings)) < len(args.recordings):
         raise UserError("--leave-out: a recording is given twice and would not be left out")
+
+
+def _halves(walks: "list[WalkMeasures]") -> "list[WalkMeasures]":
+    halves = [half for walk in walks if len(walk.curves) > 1 for half in walk.halves()]
+    if not halves:
+        raise UserError("--halves needs a recording with two steps or more")
+    for walk in walks:
+        if len(walk.curves) < 2:
+            print(f"{walk.source}: left out: it has no two steps to split", file=sys.stderr)
+    return halves
 
 
 def _configurations(
@@ -117,6 +138,8 @@ def _configurations(
         "default": lambda _: default,
         "calibrated": lambda index: calibrated([walks[index]]),
     }
+    if args.halves:
+        configurations["left out"] = lambda index: calibrated([walks[index ^ 1]])
     if args.leave_out:
         configurations["left out"] = lambda index: calibrated(walks[:index] + walks[index + 1 :])
     return configurations

@@ -1,6 +1,7 @@
 """Measures of a recorded walk, step by step, for fitting the gait model."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -51,6 +52,31 @@ class WalkMeasures:
     missing: dict[str, str]  # quantity -> why it could not be measured
     curves: list[StepCurve]  # steps from passing one foot to passing the next
 
+    def compared(self) -> "WalkMeasures":
+        """With the lengths of the steps of `curves` alone."""
+        return replace(
+            self,
+            foot=np.array([1 - curve.side for curve in self.curves], dtype=int),
+            length_m=np.array([curve.landing_m for curve in self.curves]),
+        )
+
+    def halves(self) -> "list[WalkMeasures]":
+        """The first and the second half of the steps, at the speed of the whole walk. What was
+        measured once belongs to both."""
+        split: dict[str, Any] = {
+            name: (values[: max(1, len(values) // 2)], values[len(values) // 2 :])
+            for name, values in vars(self).items()
+            if isinstance(values, np.ndarray | list)
+        }
+        return [
+            replace(
+                self,
+                source=f"{self.source}, {which} half",
+                **{name: values[index] for name, values in split.items()},
+            )
+            for index, which in enumerate(("first", "second"))
+        ]
+
 
 def measure(recording: Recording) -> WalkMeasures:
     """Raises UserError if it is not a walk, or if a mean is impossible for humans."""
@@ -61,6 +87,8 @@ def measure(recording: Recording) -> WalkMeasures:
     spans = [run[i : i + 2] for run in runs for i in range(len(run) - 1)]
     heights_m = [recording.com_m[first : end + 1, 2] for first, end in spans]
     high_m = [z_m for z_m in heights_m if np.isfinite(z_m).all()]
+    curves = step_curves(recording, events)
+    tops_m = [z_m.max() for z_m in high_m or _heights_m(curves)]
     sways_m, no_sway = _sways(recording, placed)
     grounded = _heels_on_ground(recording, placed)
     measures = WalkMeasures(
@@ -71,10 +99,10 @@ def measure(recording: Recording) -> WalkMeasures:
         width_m=np.array([_width_m(stance, to) for stance, to in pairs]),
         vertical_m=np.array([np.ptp(z_m) for z_m in high_m]),
         lateral_m=sways_m,
-        com_top_m=np.array([z_m.max() for z_m in high_m] if grounded else []),
+        com_top_m=np.array(tops_m if grounded else []),
         half_foot_m=_half_foot_m(recording, placed),
-        missing=_missing(recording, bool(pairs), bool(high_m), grounded) | no_sway,
-        curves=step_curves(recording, events),
+        missing=_missing(recording, bool(pairs), bool(high_m), bool(tops_m), grounded) | no_sway,
+        curves=curves,
     )
     _reject_implausible(measures, unsteady(recording, events, placed))
     return measures
@@ -137,7 +165,9 @@ def _reject_implausible(measures: WalkMeasures, reasons: list[str]) -> None:
             check_human_range(measures.source, quantity, float(np.mean(values)))
 
 
-def _missing(recording: Recording, placed: bool, high: bool, grounded: bool) -> dict[str, str]:
+def _missing(
+    recording: Recording, placed: bool, struck: bool, high: bool, grounded: bool
+) -> dict[str, str]:
     """Quantity -> why it is missing, except for the sway."""
     step = "no step from heel strike to heel strike with the CoM visible throughout"
     flat = "no two successive feet lay flat"
@@ -146,7 +176,7 @@ def _missing(recording: Recording, placed: bool, high: bool, grounded: bool) -> 
     reasons = {
         "step length": None if placed else toes or flat,
         "step width": None if placed else toes or flat,
-        "vertical amplitude": None if high else step,
+        "vertical amplitude": None if struck else step,
         "CoM height": step if not high else None if grounded else toes or off_ground,
         "half foot length": toes or _one_point(recording),
     }
@@ -163,6 +193,10 @@ def _one_point(recording: Recording) -> str | None:
     if not len(apart_m):
         return "heel and toe are never visible together"
     return "heel and toe are one point" if np.median(apart_m) < ONE_POINT_M else None
+
+
+def _heights_m(curves: list[StepCurve]) -> list[np.ndarray]:
+    return [curve.com_z_m for curve in curves if np.isfinite(curve.com_z_m).all()]
 
 
 def _strikes_in_turn(

@@ -5,14 +5,12 @@ first that is no worse on the recordings than the default plan. Where the record
 fields keep the population's value, its median in 58 natural trials of adults.
 """
 
-from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from saddlewalk.config import ANKLES
-from saddlewalk.gait.fit import Fit, r_squared
+from saddlewalk.gait.fit import Fit, least_squares, r_squared
 from saddlewalk.gait.planned_time import TimedStep
 
 LATERAL_DELAY_RAD = 0.18
@@ -20,16 +18,20 @@ VERTICAL_DELAY_RAD = 0.19
 STRIKE_SHARE = 0.362
 SWING = {"swing_begin": -0.32, "swing_end": 1.04, "swing_skew": 1.47}
 
-# The scatter of the feet across moves the offset by some millimetres a step, and the delay more. A
-# step on one foot alone cannot tell them apart: both bring the CoM to one side.
-OFFSET_STEPS = 1  # on each foot
-DELAY_STEPS = 2
+# Standard deviations from step to step, since feet scatter, and between persons. Steps that are
+# left out are followed equally well with half and twice these.
+PATH_SCATTER_M = 0.006
+OFFSET_SPREAD_M = 0.010
+DELAY_SPREAD_RAD = 0.6
+FACTOR_SPREAD = 0.5
+SWING_SCATTER_M = 0.02
+SWING_SPREAD = (0.2, 0.1, 0.4)
 
 LARGEST_OFFSET_M = 0.1  # what the core accepts
 LARGEST_DELAY_RAD = 1.5
 FACTOR = (0.1, 5.0)
 SWING_BOUNDS = ((-1.0, 0.6, 0.3), (0.4, 2.0, 4.0))  # what the core accepts
-SHARE = (0.05, 0.5)  # later, the plan's foot has landed
+SHARE = (0.05, 0.75)  # what the core accepts
 SAME_STEP_S = 0.02  # steps whose times differ by less show no line through the origin
 KEPT = "the population's {}"
 
@@ -39,53 +41,55 @@ def sway(steps: Sequence[TimedStep]) -> list[Fit]:
     seen = [step for step in steps if np.isfinite(step.curve.com_y_m).all()]
     if not seen:
         return [_unknown("sway", {"lateral_delay_rad": LATERAL_DELAY_RAD})]
-    feet = Counter(step.curve.side for step in seen)
-    of_each = min(feet[0], feet[1])
-    fitted = _sway(seen, offset=True, delay_rad=None)
-    candidates = [
-        fitted if of_each >= DELAY_STEPS else None,
-        _sway(seen, offset=of_each >= OFFSET_STEPS, delay_rad=LATERAL_DELAY_RAD),
-        _sway(seen, offset=False, delay_rad=LATERAL_DELAY_RAD),
-        _sway(seen, offset=False, delay_rad=0.0),
-        fitted if of_each >= OFFSET_STEPS else None,
-    ]
+    candidates = [_sway(seen, _path(seen)), _sway(seen, (0.0, 0.0))]
     usable = [fit for fit in candidates if fit is not None]
     against = "the CoM is not nearer to the foot that it passes than before and after"
     return [*usable, Fit("sway", note=against if not usable else _paper("sway"))]
 
 
-def _sway(steps: Sequence[TimedStep], offset: bool, delay_rad: float | None) -> Fit | None:
-    """Least squares; delay_rad None: fitted. None if the core would not take it."""
+def _path(steps: Sequence[TimedStep]) -> tuple[float, float]:
+    """Offset and delay, by least squares. Every step counts as one measurement beside what is known
+    of people: one on each foot tells an offset from a delay, one alone hardly does."""
+    weights = [1 / (PATH_SCATTER_M * np.sqrt(len(step.angle_rad))) for step in steps]
+    waves_m = [_waves_m(step) * weight for step, weight in zip(steps, weights, strict=True)]
+    y_m = [step.curve.com_y_m * weight for step, weight in zip(steps, weights, strict=True)]
+    cosine, sine = np.cos(LATERAL_DELAY_RAD), np.sin(LATERAL_DELAY_RAD)
+    usual = np.array(
+        [
+            [cosine / FACTOR_SPREAD, sine / FACTOR_SPREAD, 0],
+            [-sine / DELAY_SPREAD_RAD, cosine / DELAY_SPREAD_RAD, 0],
+            [0, 0, 1 / OFFSET_SPREAD_M],
+        ]
+    )
+    known = np.concatenate([*y_m, [1 / FACTOR_SPREAD, 0, 0]])
+    in_phase, late, offset_m = np.linalg.lstsq(np.concatenate([*waves_m, usual]), known)[0]
+    return float(offset_m), float(np.arctan2(late, in_phase))
+
+
+def _waves_m(step: TimedStep) -> np.ndarray:
+    """(n, 3): the path at lateral_factor 1, the same a quarter of a stride later, an offset."""
+    size_m = step.curve.outward * step.quarter.width_m / (2 * np.pi * step.speed_m_s)
+    columns = (size_m * np.cos(step.angle_rad), size_m * np.sin(step.angle_rad))
+    return np.stack([*columns, np.ones_like(step.angle_rad)], axis=1)
+
+
+def _sway(steps: Sequence[TimedStep], path: tuple[float, float]) -> Fit | None:
+    """lateral_factor beside that offset and delay. None if the core would not take it."""
+    offset_m, delay_rad = path
     y_m = np.concatenate([step.curve.com_y_m for step in steps])
-    printed_m = [
-        step.curve.outward * step.quarter.width_m / (2 * np.pi * step.speed_m_s) for step in steps
-    ]
-
-    def wave_m(lag_rad: float) -> np.ndarray:
-        pairs = zip(printed_m, steps, strict=True)
-        return np.concatenate([size_m * np.cos(step.angle_rad - lag_rad) for size_m, step in pairs])
-
-    lags_rad = [0.0, np.pi / 2] if delay_rad is None else [delay_rad]
-    columns = [wave_m(lag_rad) for lag_rad in lags_rad] + [np.ones_like(y_m)] * offset
-    solution = np.linalg.lstsq(np.stack(columns, axis=1), y_m)[0]
-    lag_rad = float(np.arctan2(*solution[1::-1])) if delay_rad is None else delay_rad
-    offset_m = float(solution[-1]) if offset else 0.0
-    wave = wave_m(lag_rad)
-    factor, beyond = _factor(steps, y_m - offset_m, wave)
-    if not FACTOR[0] <= factor <= FACTOR[1] or not _takes(offset_m, lag_rad):
+    turned = np.array([np.cos(delay_rad), np.sin(delay_rad), 0])
+    wave_m = np.concatenate([_waves_m(step) @ turned for step in steps])
+    factor, beyond = _factor(steps, y_m - offset_m, wave_m)
+    if not FACTOR[0] <= factor <= FACTOR[1] or not _takes(offset_m, delay_rad):
         return None
     fields = {
         "lateral_factor": factor,
         "lateral_offset_m": offset_m,
-        "lateral_delay_rad": lag_rad,
+        "lateral_delay_rad": delay_rad,
     }
-    notes = [
-        KEPT.format("delay") if delay_rad == LATERAL_DELAY_RAD else "",
-        "" if offset or delay_rad == 0 else "no offset",
-        f"{beyond} beyond tangency, d/pi, which bounds the plan" if beyond else "",
-    ]
-    r2 = r_squared(y_m - offset_m - factor * wave, y_m)
-    return Fit("sway", fields, len(steps), r2, "; ".join(note for note in notes if note))
+    note = f"{beyond} beyond tangency, d/pi, which bounds the plan" if beyond else ""
+    r2 = r_squared(y_m - offset_m - factor * wave_m, y_m)
+    return Fit("sway", fields, len(steps), r2, note)
 
 
 def _factor(steps: Sequence[TimedStep], y_m: np.ndarray, wave_m: np.ndarray) -> tuple[float, int]:
@@ -161,15 +165,13 @@ def strike(steps: Sequence[TimedStep]) -> list[Fit]:
     population = _unknown("heel strike", {"strike_share": STRIKE_SHARE})
     if not seen:
         return [population]
-    mean = float(step_s @ struck_s / (step_s @ step_s))
-    share = min(mean, SHARE[1])
+    share = float(step_s @ struck_s / (step_s @ step_s))
     left_over_s = struck_s - share * step_s
     note = f"{1e3 * left_over_s.std():.0f} ms scatter"
-    if mean > share:
-        note += f"; {mean:.2f}, after the plan's foot has landed"
     r2 = r_squared(left_over_s, struck_s) if np.ptp(step_s) > SAME_STEP_S else np.nan
-    fits = [Fit("heel strike", {"strike_share": share}, len(seen), r2, note)]
-    return [*fits[share < SHARE[0] :], population, Fit("heel strike", note=_paper("time"))]
+    fitted = Fit("heel strike", {"strike_share": share}, len(seen), r2, note)
+    within = SHARE[0] <= share <= SHARE[1]
+    return [*[fitted] * within, population, Fit("heel strike", note=_paper("time"))]
 
 
 def swing(steps: Sequence[TimedStep]) -> list[Fit]:
@@ -183,9 +185,16 @@ def swing(steps: Sequence[TimedStep]) -> list[Fit]:
     def left_over_m(coefficients: np.ndarray) -> np.ndarray:
         return x_m - length_m * (2 * swing_profile(progress, *coefficients) - 1)
 
-    found = least_squares(left_over_m, list(SWING.values()), bounds=SWING_BOUNDS)
-    fields = dict(zip(SWING, map(float, found.x), strict=True))
-    rest_m = left_over_m(found.x)
+    usual = np.array(list(SWING.values()))
+    weight = np.sqrt(len(samples) / len(x_m)) / SWING_SCATTER_M
+
+    def unlikely(coefficients: np.ndarray) -> np.ndarray:
+        beside_usual = (coefficients - usual) / SWING_SPREAD
+        return np.concatenate([weight * left_over_m(coefficients), beside_usual])
+
+    found = least_squares(unlikely, usual, SWING_BOUNDS)
+    fields = dict(zip(SWING, map(float, found), strict=True))
+    rest_m = left_over_m(found)
     fitted = Fit("swing", fields, len(steps), r_squared(rest_m, x_m))
     line = Fit("swing", note=_paper("line"))
     if np.linalg.norm(x_m - line_m) < np.linalg.norm(rest_m):

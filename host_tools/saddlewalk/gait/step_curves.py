@@ -1,12 +1,13 @@
 """The recorded walk between passing one foot and the next, curve by curve: what a plan is compared
 with and a person's shape fitted to."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from saddlewalk.gait.events import FootEvents, passing, placements
+from saddlewalk.gait.events import FootEvents, Placement, passing, placements
 from saddlewalk.gait.recording import Recording
 
 LONGEST_STEP_S = 3.0  # between heel strikes further apart one was missed
@@ -44,11 +45,13 @@ def step_curves(recording: Recording, events: tuple[FootEvents, FootEvents]) -> 
         if not 0 < end_s - start_s <= LONGEST_STEP_S:
             continue
         span = slice(first, end)
-        before = placed[i - 1] if i and placed[i - 1].side == to.side else to
-        line_y_m = stance.cop_m[1] / 2 + (before.cop_m[1] + to.cop_m[1]) / 4
+        share = (recording.time_s[span] - start_s) / (end_s - start_s)
+        line_y_m = (1 - share) * _midway_m(placed, i) + share * _midway_m(placed, i + 1)
         strikes = events[to.side].heel_strikes
         struck = strikes[(strikes >= first) & (strikes < end)]
-        origin_m = np.array([stance.cop_m[0], line_y_m, 0.0])
+        origin_m = np.stack(
+            [np.full_like(share, stance.cop_m[0]), line_y_m, np.zeros_like(share)], axis=1
+        )
         com_m = recording.com_m[span] - origin_m
         curves.append(
             StepCurve(
@@ -63,3 +66,17 @@ def step_curves(recording: Recording, events: tuple[FootEvents, FootEvents]) -> 
             )
         )
     return curves
+
+
+def _midway_m(placed: Sequence[Placement], index: int) -> float:
+    """y midway between a foot and the other one, which lands before and after it; beyond the first
+    and the last placement the other foot is taken to drift aside as this one does."""
+    at_m = {}
+    for k in range(max(-2, -index), min(3, len(placed) - index)):
+        if (placed[index + k].side == placed[index].side) == (k % 2 == 0):
+            at_m[k] = float(placed[index + k].cop_m[1])
+    others_m = [at_m[k] for k in (-1, 1) if k in at_m]
+    if len(others_m) == 1:
+        k = 1 if 1 in at_m else -1
+        others_m.append(at_m[k] + at_m[0] - at_m.get(2 * k, at_m[0]))
+    return (at_m[0] + sum(others_m) / len(others_m)) / 2
