@@ -4,6 +4,7 @@ import csv
 import importlib.util
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,8 @@ from saddlewalk.emulation import closed_loop
 from saddlewalk.emulation.wearer import Noise, Push
 from saddlewalk.physics.plants import PlantChoice
 from saddlewalk.planning.schedule import schedule_of
+from saddlewalk.transport.lcm_log import LcmLog
+from saddlewalk.view.rows import NAMES, Rows
 
 BODIES = ("winter", "dm_control")
 STEADY = Noise(position_m=0.0, velocity_m_s=0.0)
@@ -167,6 +170,27 @@ def test_the_demo_walks_a_body_over_the_wire(tmp_path, capsys):
     assert (tmp_path / "demo/body.png").stat().st_size > 20_000
     shown = capsys.readouterr().out
     assert "ok   the wearer stayed up" in shown and "clock: lockstep" in shown
+    from saddlewalk.physics.body import SHANK_LENGTH, THIGH_LENGTH
+
+    rows = view_rows(tmp_path / "demo/walk.lcmlog")
+    joint = {
+        name: np.array([rows[f"left_{name}_{axis}_m"] for axis in "xz"])
+        for name in ("hip", "knee", "ankle", "heel", "toe")
+    }
+    known = np.isfinite(joint["hip"][0])
+    assert known.sum() == len(known) - 1  # all but the first tick's
+    for upper, lower, share in (("hip", "knee", THIGH_LENGTH), ("knee", "ankle", SHANK_LENGTH)):
+        length_m = np.hypot(*(joint[upper] - joint[lower]))[known]
+        assert np.allclose(length_m, share * 1.79, rtol=0.01)  # seen from the side
+    middle_m = (joint["heel"][0] + joint["toe"][0]) / 2
+    assert np.abs(middle_m - rows["left_x_m"])[known].max() < 0.03  # held where it was measured
+    assert (rows["trunk_up_z"][known] > 0.97).all()
+
+
+def view_rows(log: Path) -> dict[str, np.ndarray]:
+    reader = Rows()
+    rows = [reader.feed(event.channel, event.data) for event in LcmLog(log)]
+    return dict(zip(NAMES, np.array([row for row in rows if row]).T, strict=True))
 
 
 @pytest.mark.parametrize(

@@ -82,6 +82,19 @@ def test_rows_place_the_body_and_the_plan_where_the_wearer_is(walk):
         assert both.sum() > 100 and np.quantile(differ, 0.95) < 0.01 and differ.max() < 0.1
 
 
+def test_rows_have_the_pendulum_to_balance_by(walk):
+    rows = rows_of(walk / "walk.lcmlog")
+    walking = rows["plan.mode"] == 2
+    com, cop = rows["reference_com_x_m"][walking], rows["reference_cop_x_m"][walking]
+    assert np.abs(com - rows["plan_com_x_m"][walking]).max() < 0.1
+    feet = np.array([rows[f"plan_{side}_x_m"][walking] for side in ("left", "right")])
+    assert (cop > feet.min(axis=0) - 0.15).all() and (cop < feet.max(axis=0) + 0.15).all()
+
+
+def test_a_pendulum_has_no_joints(walk):
+    assert np.isnan(rows_of(walk / "walk.lcmlog")["left_knee_z_m"]).all()
+
+
 def test_expected_base_of_support_contains_the_landing_that_is_planned(walk):
     rows = rows_of(walk / "walk.lcmlog")
     xs = np.array([rows[f"ebos_x_m.{index}"] for index in range(VERTICES)])

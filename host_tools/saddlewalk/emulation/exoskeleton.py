@@ -9,13 +9,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import can
+import numpy as np
 
 from saddlewalk import core
 from saddlewalk.contract import LEFT, RIGHT, STAND, STANDING, TICK_S, WALK
 from saddlewalk.emulation import plans
 from saddlewalk.emulation.paced_ticks import WAKE_UP_S, PacedTicks
 from saddlewalk.emulation.punctuality import Punctuality
-from saddlewalk.emulation.wearer import STEP_S, Measurement, Plan, PlanAt, Wearer
+from saddlewalk.emulation.wearer import STEP_S, Measurement, Plan, PlanAt, Skeleton, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.lockstep_host import LockstepHost
 from saddlewalk.planning.schedule import Schedule
@@ -348,6 +349,10 @@ class Exoskeleton:
         message = truth_message(self._wearer, self._wearer.pushed_n_s - self._pushed_n_s)
         self._pushed_n_s = self._wearer.pushed_n_s
         self._lcm.publish("SADDLEWALK_TRUTH", message.encode())
+        skeleton = self._wearer.skeleton()
+        if skeleton is not None:
+            message = skeleton_message(skeleton, self._wearer.com_m)
+            self._lcm.publish("SADDLEWALK_SKELETON", message.encode())
 
 
 def truth_message(wearer: Wearer, push_n_s: complex) -> Any:
@@ -368,4 +373,17 @@ def truth_message(wearer: Wearer, push_n_s: complex) -> Any:
     message.push_n_s = [push_n_s.real, push_n_s.imag]
     message.left_contact, message.right_contact = left.contact, right.contact
     message.fallen = wearer.fallen
+    return message
+
+
+def skeleton_message(skeleton: Skeleton, com_m: complex) -> Any:
+    """A skeleton_t, from the CoM."""
+    from saddlewalk.transport.lcm_types import skeleton_t
+
+    com = np.array([com_m.real, com_m.imag, 0.0])
+    message = skeleton_t()
+    message.utime_us = time.time_ns() // 1000
+    for name in ("hip_m", "knee_m", "ankle_m", "heel_m", "toe_m"):
+        setattr(message, name, (getattr(skeleton, name) - com).tolist())
+    message.trunk_up = skeleton.trunk_up.tolist()
     return message

@@ -83,6 +83,18 @@ class Noise:
 
 
 @dataclass(frozen=True)
+class Skeleton:
+    """Where the joints of a body are, in the world; of each leg by side, (2, 3)."""
+
+    hip_m: np.ndarray
+    knee_m: np.ndarray
+    ankle_m: np.ndarray
+    heel_m: np.ndarray
+    toe_m: np.ndarray
+    trunk_up: np.ndarray  # (3,): unit vector from the hips to the shoulders
+
+
+@dataclass(frozen=True)
 class Push:
     """An impulse on the CoM, spread evenly over STEPS of physics from `time_s` of the walk on."""
 
@@ -261,6 +273,10 @@ class Wearer:
     def peaks(self) -> dict[str, tuple[float, float, float]]:
         """Greatest torque, power and speed of each joint so far: a pendulum has none."""
         return {}
+
+    def skeleton(self) -> Skeleton | None:
+        """A pendulum has no joints."""
+        return None
 
     @property
     def xcom_m(self) -> complex:

@@ -66,6 +66,10 @@ class Leg:
         return np.asarray(self.corners_m[:2].mean(axis=0))
 
     @functools.cached_property
+    def heel_m(self) -> np.ndarray:
+        return np.asarray(self.corners_m[2:].mean(axis=0))
+
+    @functools.cached_property
     def sole_m(self) -> np.ndarray:
         """The middle of the sole, which stands for the foot in plans and measurements."""
         return np.asarray(self.corners_m.mean(axis=0))

@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 
 from saddlewalk.contract import LEFT, RIGHT, SIDES
+from saddlewalk.emulation.wearer import Skeleton
 from saddlewalk.physics.body import TIMESTEP_S, Body
 
 POSE_ITERATIONS, POSE_STEP_MAX, POSE_TOLERANCE = 200, 0.2, 1e-4
@@ -52,6 +53,26 @@ class Plant:
     def sole_rise_m(self, side: int) -> float:
         """Of the middle of the sole over its lower end."""
         return self.body.legs[side].half_length_m * abs(math.sin(self.sole_pitch_rad(side)))
+
+    def skeleton(self) -> Skeleton:
+        """Of the joints' axes, and the ends of the soles."""
+        legs = [self._leg(side) for side in (LEFT, RIGHT)]
+        hips, knees, ankles, heels, toes = (np.array(part) for part in zip(*legs, strict=True))
+        upwards = self.data.xmat[self._pelvis].reshape(3, 3)[:, 2]
+        return Skeleton(hips, knees, ankles, heels, toes, upwards)
+
+    def _leg(self, side: int) -> tuple[np.ndarray, ...]:
+        """Hip, knee, ankle, heel and toe."""
+        model, data, leg = self.model, self.data, self.body.legs[side]
+        knee, foot = model.joint(leg.knee), self._feet[side]
+        thigh = model.body_parentid[knee.bodyid[0]]
+        return (
+            data.xpos[thigh],
+            data.xanchor[knee.id],
+            data.xanchor[model.body_jntadr[foot]],
+            self._at_foot(side, leg.heel_m),
+            self._at_foot(side, leg.toe_m),
+        )
 
     def _at_foot(self, side: int, local_m: np.ndarray) -> np.ndarray:
         foot = self._feet[side]

@@ -71,6 +71,9 @@ class PhysicalWearer(emulation.Wearer):
         """Of the quadratic programmes so far, without an optimum."""
         return self._dynamics.unsolved / max(self._programmes, 1)
 
+    def skeleton(self) -> emulation.Skeleton:
+        return self.plant.skeleton()
+
     def peaks(self) -> dict[str, tuple[float, float, float]]:
         return self.plant.peaks_of_joints()
 

@@ -36,6 +36,8 @@ _TAKEN: dict[str, tuple[str, ...]] = {  # as they are
 }
 _AGES = tuple(f"{name}_age_us" for name in ("command", "com", "left", "right"))
 _POINTS = ("com", "left", "right")
+_REFERENCE = ("com", "xcom", "cop")
+_JOINTS = ("hip", "knee", "ankle", "heel", "toe")
 
 
 def _polygon_names(name: str) -> list[str]:
@@ -53,6 +55,14 @@ NAMES: tuple[str, ...] = (
     *(f"plan_{point}_{axis}_m" for point in _POINTS for axis in "xyz"),
     *("plan_left_pitch_rad", "plan_right_pitch_rad", "landing_x_m", "landing_y_m"),
     *("recovery_x_m", "recovery_y_m"),
+    *(f"reference_{point}_{axis}_m" for point in _REFERENCE for axis in "xy"),
+    *(
+        f"{side}_{joint}_{axis}_m"
+        for joint in _JOINTS
+        for side in ("left", "right")
+        for axis in "xz"
+    ),
+    *("trunk_up_x", "trunk_up_z"),
     *_polygon_names("bos"),
     *_polygon_names("ebos"),
 )
@@ -73,6 +83,7 @@ class Rows:
         self._world = World()
         self._push_n_s = 0j
         self._fallen = 0
+        self._skeleton: Any = None  # the newest
 
     def feed(self, channel: str, data: bytes) -> "array[float] | None":
         """The row of the tick that this message completes, in the order of NAMES.
@@ -87,6 +98,8 @@ class Rows:
         if kind.name == "truth":
             self._push_n_s += complex(*message.push_n_s)
             self._fallen = message.fallen
+        if kind.name == "skeleton":
+            self._skeleton = message
         if kind.name not in FIRMWARE:
             return None
         row = None
@@ -146,6 +159,8 @@ class Rows:
             *(plan.foot_pitch_rad if plan else (_UNKNOWN, _UNKNOWN)),
             *_parts(world.landing(plan)),
             *_parts(_recovery(world, verdict)),
+            *(part for point in _REFERENCE for part in _parts(world.reference(plan, point))),
+            *_skeleton(world, self._skeleton),
             *_bos(world, messages.get("bos")),
             *self._expected_bos(plan),
         ]
@@ -215,6 +230,12 @@ class World:
         point = self._plan_m + _walked(plan, complex(x_m, y_m))
         return (point.real, point.imag, z_m)
 
+    def reference(self, plan: Any, point: str) -> complex:
+        """CoM, XCoM or CoP of the pendulum to balance by."""
+        if not plan or not plan.valid:
+            return _NOWHERE
+        return self._plan_m + _walked(plan, _complex(plan, f"reference_{point}_m"))
+
     def landing(self, plan: Any) -> complex:
         """Where the swing foot is planned to land."""
         if not plan or not plan.valid or plan.mode == STANDING:
@@ -249,6 +270,16 @@ def _recovery(world: World, verdict: Any) -> complex:
         return _NOWHERE
     other = LEFT if verdict.recovery_foot == verdict.RIGHT else RIGHT
     return world.feet_m[other] + complex(*verdict.recovery_landing_m)
+
+
+def _skeleton(world: World, skeleton: Any) -> list[float]:
+    """Joints forward and up, and the trunk's direction."""
+    if not skeleton:
+        return [_UNKNOWN] * (4 * len(_JOINTS) + 2)
+    ahead_m = world.com_m.real
+    joints = [getattr(skeleton, f"{joint}_m")[side] for joint in _JOINTS for side in (LEFT, RIGHT)]
+    places = [part for x_m, _, z_m in joints for part in (ahead_m + x_m, z_m)]
+    return [*places, skeleton.trunk_up[0], skeleton.trunk_up[2]]
 
 
 def _bos(world: World, bos: Any) -> Sequence[float]:

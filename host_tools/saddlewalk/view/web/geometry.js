@@ -30,16 +30,26 @@ function footAt(foot, ankleHeight) {
   return { heel: at(behind, 0), toe: at(behind + FOOT.length, 0), ankle: at(behind + FOOT.heel, ankleHeight) };
 }
 
-// The figure as points {x, z}; feet: of each side {x, z, pitch}.
+// The figure as points {x, z}, found from CoM and feet; feet: of each side {x, z, pitch}.
 function figure(com, feet, height) {
   const hip = { x: com.x, z: com.z - SEGMENTS.hip * height };
-  const shoulder = { x: hip.x, z: hip.z + SEGMENTS.trunk * height };
   const legs = feet.map((foot) => {
     const { heel, toe, ankle } = footAt(foot, SEGMENTS.ankle * height);
-    return { heel, toe, ankle, knee: knee(hip, ankle, SEGMENTS.thigh * height, SEGMENTS.shank * height) };
+    return { hip, heel, toe, ankle, knee: knee(hip, ankle, SEGMENTS.thigh * height, SEGMENTS.shank * height) };
   });
-  const head = { x: shoulder.x, z: shoulder.z + (SEGMENTS.neck + SEGMENTS.head) * height };
-  return { hip, shoulder, head, legs, radius: SEGMENTS.head * height };
+  return { ...trunk(hip, { x: 0, z: 1 }, height), legs };
+}
+
+// The figure of joints that are known: the legs' points, and the trunk's direction.
+function jointed(legs, up, height) {
+  const middle = (axis) => (legs[0].hip[axis] + legs[1].hip[axis]) / 2;
+  return { ...trunk({ x: middle("x"), z: middle("z") }, up, height), legs };
+}
+
+function trunk(hip, up, height) {
+  const at = (length) => ({ x: hip.x + up.x * length * height, z: hip.z + up.z * length * height });
+  const { trunk, neck, head } = SEGMENTS;
+  return { hip, shoulder: at(trunk), head: at(trunk + neck + head), radius: head * height };
 }
 
 // A canvas whose unit is the metre: x to the right and up as given, about a centre.
@@ -121,6 +131,21 @@ class Board {
     c.fill();
     c.strokeStyle = "#fff";
     c.lineWidth = 2;
+    c.stroke();
+  }
+
+  // Points up, its tip at the place.
+  triangle(x, up, size, colour) {
+    if (!Number.isFinite(x) || !Number.isFinite(up)) return;
+    const c = this.context;
+    const [px, py] = [this.px(x), this.py(up)];
+    c.beginPath();
+    c.moveTo(px, py); c.lineTo(px + 0.6 * size, py + size); c.lineTo(px - 0.6 * size, py + size);
+    c.closePath();
+    c.fillStyle = colour;
+    c.fill();
+    c.strokeStyle = "#fff";
+    c.lineWidth = 1.5;
     c.stroke();
   }
 

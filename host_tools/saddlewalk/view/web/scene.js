@@ -72,6 +72,7 @@ class Above {
     SIDES.forEach((side) => this.foot(read, side));
     this.steps(read);
     board.dot(read("plan_com_x_m"), read("plan_com_y_m"), 6, COLOURS.ink, true);
+    board.triangle(read("reference_cop_x_m"), read("reference_cop_y_m"), 7, COLOURS.blue);
     board.line([[com.x, com.y], [read("xcom_x_m"), read("xcom_y_m")]], COLOURS.pink, 1.5);
     board.diamond(read("xcom_x_m"), read("xcom_y_m"), 8, COLOURS.pink);
     board.dot(com.x, com.y, 8, COLOURS.blue);
@@ -170,8 +171,9 @@ function drawFigure(board, body) {
   [1, 0].forEach((side) => {
     const leg = body.legs[side];
     const colour = COLOURS[SIDES[side]];
-    board.line([body.hip, leg.knee, leg.ankle].map((p) => [p.x, p.z]), colour, 6);
+    board.line([leg.hip, leg.knee, leg.ankle].map((p) => [p.x, p.z]), colour, 6);
     board.line([leg.heel, leg.toe, leg.ankle, leg.heel].map((p) => [p.x, p.z]), colour, 4);
+    for (const joint of [leg.hip, leg.knee, leg.ankle]) board.dot(joint.x, joint.z, 5, colour, true);
   });
   board.line([[body.hip.x, body.hip.z], [body.shoulder.x, body.shoulder.z]], COLOURS.ink, 7);
   board.dot(body.head.x, body.head.z, body.radius * board.scale, COLOURS.ink);
@@ -194,7 +196,15 @@ class Side {
     grid(board, 0.5, false);
     board.line([[x - 9, 0], [x + 9, 0]], COLOURS.soft, 2);
     this.planned(read, height);
+    this.reference(read);
     this.measured(read, height);
+  }
+
+  // The pendulum to balance by: from its CoP to its CoM, at the planned height.
+  reference(read) {
+    const [cop, com, z] = [read("reference_cop_x_m"), read("reference_com_x_m"), read("plan_com_z_m")];
+    this.board.line([[cop, 0], [com, z]], COLOURS.blue, 1.5, [2, 3]);
+    this.board.triangle(cop, 0, 9, COLOURS.blue);
   }
 
   planned(read, height) {
@@ -206,7 +216,7 @@ class Side {
     const body = figure(com, feet, height);
     const dash = [4, 5];
     for (const leg of body.legs) {
-      this.board.line([body.hip, leg.knee, leg.ankle].map((p) => [p.x, p.z]), COLOURS.soft, 1.5, dash);
+      this.board.line([leg.hip, leg.knee, leg.ankle].map((p) => [p.x, p.z]), COLOURS.soft, 1.5, dash);
       this.board.line([leg.heel, leg.toe].map((p) => [p.x, p.z]), COLOURS.soft, 1.5, dash);
     }
     this.board.line([[body.hip.x, body.hip.z], [body.shoulder.x, body.shoulder.z]], COLOURS.soft, 1.5, dash);
@@ -216,15 +226,30 @@ class Side {
   measured(read, height) {
     const com = { x: read("com_x_m"), z: read("com_z_m") };
     if (!Number.isFinite(com.z)) return;
-    const feet = SIDES.map((side) => {
+    const legs = this.joints(read);
+    const up = { x: read("trunk_up_x"), z: read("trunk_up_z") };
+    const body = legs ? jointed(legs, up, height) : figure(com, this.feet(read), height);
+    drawFigure(this.board, body);
+    this.board.dot(com.x, com.z, 8, COLOURS.blue);
+  }
+
+  // Of a body whose joints are known; else null.
+  joints(read) {
+    const legs = SIDES.map((side) => Object.fromEntries(
+      ["hip", "knee", "ankle", "heel", "toe"].map((joint) => [
+        joint, { x: read(`${side}_${joint}_x_m`), z: read(`${side}_${joint}_z_m`) },
+      ]),
+    ));
+    return Number.isFinite(legs[0].hip.z) ? legs : null;
+  }
+
+  feet(read) {
+    return SIDES.map((side) => {
       const planned = [read(`plan_${side}_z_m`), read(`plan_${side}_pitch_rad`)];
       const lifted = read(`${side}_contact`) !== 1 && Number.isFinite(planned[0]);
       const pitched = Number.isFinite(planned[0]);
       return { x: read(`${side}_x_m`), z: lifted ? planned[0] : 0, pitch: pitched ? planned[1] : 0 };
     });
-    const body = figure(com, feet, height);
-    drawFigure(this.board, body);
-    this.board.dot(com.x, com.z, 8, COLOURS.blue);
   }
 }
 
@@ -233,6 +258,7 @@ const SWATCHES = {
   dash: (colour) => `<rect x="4" y="1" width="18" height="10" fill="none" stroke="${colour}" stroke-width="1.6" stroke-dasharray="3 3"/>`,
   foot: (colour) => `<ellipse cx="13" cy="6" rx="11" ry="5" fill="${colour}"/>`,
   dot: (colour) => `<circle cx="13" cy="6" r="5" fill="${colour}"/>`,
+  triangle: (colour) => `<path d="M13 1 19 11H7Z" fill="${colour}"/>`,
   ring: (colour) => `<circle cx="13" cy="6" r="4.5" fill="#fff" stroke="${colour}" stroke-width="2"/>`,
   diamond: (colour) => `<path d="M7 6 13 0 19 6 13 12Z" fill="${colour}"/>`,
   line: (colour, dash) => `<path d="M1 6H25" stroke="${colour}" stroke-width="2.5" stroke-dasharray="${dash || ""}"/>`,
@@ -249,9 +275,11 @@ const ABOVE_LEGEND = [
   ["fill", COLOURS.sky, "base of support"], ["dash", COLOURS.blue, "expected at the next heel strike"],
   ["dot", COLOURS.blue, "CoM"], ["diamond", COLOURS.pink, "XCoM, where the body is heading"],
   ["ring", COLOURS.ink, "planned CoM"], ["dash", COLOURS.ink, "planned landing"],
+  ["triangle", COLOURS.blue, "planned CoP, to balance by"],
   ["fill", COLOURS.orange, "recovery step"],
 ];
 const SIDE_LEGEND = [
   ["line", COLOURS.left, "left leg"], ["line", COLOURS.right, "right leg"],
   ["dot", COLOURS.blue, "CoM, measured"], ["line", COLOURS.soft, "planned", "4 4"],
+  ["triangle", COLOURS.blue, "planned CoP, to balance by"],
 ];
