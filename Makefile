@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller coverage prove fuzz mutants soak test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground fmu site release samples physics bench-baselines format lint clean help
+.PHONY: build demo amalgamation controller coverage prove rules fuzz mutants soak test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground fmu site release samples physics bench-baselines format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -58,6 +58,9 @@ coverage: build-coverage/build.ninja .venv/installed-test ## every branch and co
 
 prove: build ## run-time errors for any input, by Frama-C's Eva
 	@$(BIN)/python tests/proof/prove.py build/firmware/wire/signals
+
+rules: build ## MISRA C:2012 by cppcheck, and gcc's analysis of paths
+	@$(BIN)/python tests/rules/check.py build
 
 fuzz: build-fuzz/build.ninja ## random inputs under sanitizers; make fuzz HOURS=8, or SECONDS=60 in all
 	@$(BIN)/ninja -C build-fuzz --quiet fuzz_targets

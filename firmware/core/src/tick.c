@@ -224,7 +224,7 @@ saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *c
         return SADDLE_ERROR_COMMAND;
     }
     context->command = *command;
-    saddle_planner_join(&context->planner, &context->model, command);
+    (void)saddle_planner_join(&context->planner, &context->model, command);
     return SADDLE_OK;
 }
 
@@ -273,7 +273,7 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
     saddle_planner_t planner;
     saddle_copy(&planner, &context->planner, sizeof planner);
     advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
-    saddle_plan_write(&planner, &context->model, plan);
+    (void)saddle_plan_write(&planner, &context->model, plan);
     return saddle_plan_finite(plan) ? SADDLE_OK : refuse_plan(plan, SADDLE_ERROR_NUMBER);
 }
 

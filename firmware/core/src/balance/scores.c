@@ -39,7 +39,7 @@ static void score_space(const saddle_model_t *model, const saddle_posture_t *pos
     }
     scores->mos_com_m = saddle_bos_margin_m(&scores->bos, posture->com.com_m);
     scores->valid |= (uint32_t)SADDLE_VALID_MOS_COM;
-    if ((posture->known & SADDLE_KNOWN_VELOCITY) != 0u) {
+    if ((posture->known & (uint32_t)SADDLE_KNOWN_VELOCITY) != 0u) {
         scores->mos_xcom_m = saddle_bos_margin_m(&scores->bos, scores->xcom_m);
         scores->valid |= (uint32_t)SADDLE_VALID_MOS_XCOM;
         score_energy(model, posture, support, scores);
@@ -62,10 +62,10 @@ static void score_walk(const saddle_model_t *model, const saddle_posture_t *post
     const uint32_t known = posture->known;
     scores->v_comp_m_s = posture->v_comp_m_s;
     scores->valid |= (uint32_t)SADDLE_VALID_V_COMP;
-    if ((known & SADDLE_KNOWN_HALF_STEP) != 0u) {
+    if ((known & (uint32_t)SADDLE_KNOWN_HALF_STEP) != 0u) {
         score_steps(model, posture, scores);
     }
-    if ((known & SADDLE_KNOWN_FEET) != 0u) {
+    if ((known & (uint32_t)SADDLE_KNOWN_FEET) != 0u) {
         const float midline_m =
             0.5f * (posture->cop_m[SADDLE_LEFT].y + posture->cop_m[SADDLE_RIGHT].y);
         scores->s_sw = saddle_width_score(posture->com.com_m.y - midline_m,
@@ -99,14 +99,14 @@ void saddle_score_posture(const saddle_model_t *model, const saddle_posture_t *p
     support->bos = &scores->bos;
     support->at_com.reached = false;
     score_nothing(scores);
-    if ((posture->known & SADDLE_KNOWN_VELOCITY) != 0u) {
+    if ((posture->known & (uint32_t)SADDLE_KNOWN_VELOCITY) != 0u) {
         scores->xcom_m = saddle_xcom_m(posture->com.com_m, posture->com.velocity_m_s,
                                        model->body.natural_frequency_rad_s);
     }
-    if ((posture->known & SADDLE_KNOWN_SPEED) != 0u) {
+    if ((posture->known & (uint32_t)SADDLE_KNOWN_SPEED) != 0u) {
         score_walk(model, posture, scores);
     }
-    if ((posture->known & SADDLE_KNOWN_FEET) != 0u) {
+    if ((posture->known & (uint32_t)SADDLE_KNOWN_FEET) != 0u) {
         support->at_com =
             saddle_surface(posture->cop_m, posture->com.com_m, model->body.pendulum_m);
         score_space(model, posture, support, scores);
@@ -118,7 +118,7 @@ uint32_t saddle_score_faults(uint32_t known, const saddle_scores_t *scores)
 {
     const uint32_t for_steps = (uint32_t)SADDLE_KNOWN_SPEED | (uint32_t)SADDLE_KNOWN_HALF_STEP;
     uint32_t faults = 0;
-    if ((known & SADDLE_KNOWN_FEET) != 0u && !scores->bos.defined) {
+    if ((known & (uint32_t)SADDLE_KNOWN_FEET) != 0u && !scores->bos.defined) {
         faults |= (uint32_t)SADDLE_FAULT_FEET_TOGETHER;
     }
     if ((known & for_steps) == for_steps &&

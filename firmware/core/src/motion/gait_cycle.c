@@ -236,7 +236,7 @@ static float toe_off_angle_rad(const saddle_cycle_t *cycle, const saddle_model_t
     saddle_ankle_state_t ankle;
     const float leg_m =
         length_m(cycle->quarter.length_m, place->lateral.value, place->vertical.value);
-    saddle_ankle_for_leg(model, leg_m, true, &ankle);
+    (void)saddle_ankle_for_leg(model, leg_m, true, &ankle);
     return ankle.toe_off_rad;
 }
 
@@ -677,8 +677,8 @@ static float landing_angle_rad(const saddle_cycle_t *cycle, const saddle_model_t
     const place_t landing = reference_at(cycle, model, SADDLE_PHASE_LANDING);
     const float y_m = landing.lateral.value + saddle_outward(quarter->stance) * quarter->width_m;
     saddle_ankle_state_t ankle;
-    saddle_ankle_for_leg(model, length_m(quarter->length_m, y_m, landing.vertical.value), false,
-                         &ankle);
+    (void)saddle_ankle_for_leg(model, length_m(quarter->length_m, y_m, landing.vertical.value),
+                               false, &ankle);
     return ankle.heel_strike_rad;
 }
 

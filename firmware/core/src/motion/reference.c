@@ -265,13 +265,16 @@ static saddle_vec2_t standing_place_m(const saddle_model_t *model, saddle_vec2_t
     return place_m;
 }
 
-/* Where a first swing began, at rest, and when; what decays in the time since then, in the time that is
- * left, and in both. */
+/* Where a first swing began, at rest, and when. */
 typedef struct {
     saddle_vec2_t begin_m;
     float elapsed_s, left_s;
-    float elapsed, left, whole;
 } first_swing_t;
+
+/* What decays in the time since then, in the time that is left, and in both. */
+typedef struct {
+    float elapsed, left, whole;
+} swing_decay_t;
 
 /* The plan begins beside the stance foot, or where the feet were apart midway between them. */
 static first_swing_t first_swing_of(const saddle_model_t *model, const saddle_plan_t *plan,
@@ -291,13 +294,13 @@ static first_swing_t first_swing_of(const saddle_model_t *model, const saddle_pl
 }
 
 /* [E41] Along one axis, from rest at begin to an XCoM at the landing, about a CoP that stays. */
-static void fall(float begin, float landing, float range, const first_swing_t *first,
+static void fall(float begin, float landing, float range, const swing_decay_t *decay,
                  state_t *state)
 {
-    const float wanted = begin - (landing - begin) * first->whole / (1.0f - first->whole);
+    const float wanted = begin - (landing - begin) * decay->whole / (1.0f - decay->whole);
     state->cop = saddle_clamp(wanted, -range, range);
-    state->advancing = state->cop + (landing - state->cop) * first->left;
-    state->receding = state->cop + (begin - state->cop) * first->elapsed;
+    state->advancing = state->cop + (landing - state->cop) * decay->left;
+    state->receding = state->cop + (begin - state->cop) * decay->elapsed;
 }
 
 /* Speed at the landing of a first swing: it has changed evenly until then. */
@@ -327,14 +330,16 @@ static void begin_walk(const saddle_model_t *model, const saddle_plan_t *plan, f
     }
     first.left_s -= after_s;
     first.elapsed_s += after_s;
-    first.elapsed = saddle_decay(w * first.elapsed_s);
-    first.left = saddle_decay(w * first.left_s);
-    first.whole = saddle_decay(w * (first.elapsed_s + first.left_s));
+    const swing_decay_t decay = {
+        saddle_decay(w * first.elapsed_s),
+        saddle_decay(w * first.left_s),
+        saddle_decay(w * (first.elapsed_s + first.left_s)),
+    };
     motion_t landed, motion;
     motion_in(model, &next, &landed);
-    fall(first.begin_m.x, step.next_m.x + landed.x.advancing, model->config.cop_range_m, &first,
+    fall(first.begin_m.x, step.next_m.x + landed.x.advancing, model->config.cop_range_m, &decay,
          &motion.x);
-    fall(first.begin_m.y, -step.next_m.y - landed.y.advancing, model->config.cop_shift_ml_m, &first,
+    fall(first.begin_m.y, -step.next_m.y - landed.y.advancing, model->config.cop_shift_ml_m, &decay,
          &motion.y);
     motion.carried = 1.0f;
     write(&step, &motion, reference);
