@@ -22,6 +22,11 @@ uint64_t saddle_clock_now_us(void);
  *  after ten years. */
 uint32_t saddle_clock_ticks_due(void);
 
+/** 32 bits that nobody can predict, from a source of the hardware: for codes, once a session. False:
+ *  there are none yet, or no such source; until there are, no command is accepted where codes are
+ *  required. */
+bool saddle_random(uint32_t *bits);
+
 /** Feed the watchdog. Unless this is called again in time, it resets the controller. */
 void saddle_watchdog_feed(void);
 

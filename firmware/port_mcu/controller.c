@@ -50,6 +50,30 @@ static bool is_due(saddle_controller_t *controller, uint64_t *due_us)
     return true;
 }
 
+static void send_frame(saddle_controller_t *controller, const saddle_frame_t *from)
+{
+    saddle_can_frame_t frame = {.id = from->id, .length = SADDLE_WIRE_LENGTH};
+    memcpy(frame.data, from->data, sizeof frame.data);
+    controller->not_sent += !saddle_can_send(&frame);
+}
+
+/** Where codes are required: a new session if it is time for one, and to those who command the
+ *  session there is. */
+static void keep_session(saddle_controller_t *controller, const saddle_output_t *output)
+{
+    saddle_wire_receiver_t *receiver = &controller->inbox.receiver;
+    uint32_t bits;
+    if (saddle_wire_session_expired(receiver, output, controller->timing.ticks) &&
+        saddle_random(&bits)) {
+        saddle_wire_open_session(receiver, bits);
+    }
+    if (receiver->guard.opened) {
+        saddle_frame_t frame;
+        saddle_wire_encode_session(receiver, (uint8_t)controller->timing.ticks, &frame);
+        send_frame(controller, &frame);
+    }
+}
+
 static void send_output(saddle_controller_t *controller, const saddle_output_t *output)
 {
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
@@ -57,9 +81,7 @@ static void send_output(saddle_controller_t *controller, const saddle_output_t *
     health.rejected_frames += saddle_can_lost();
     saddle_wire_encode_output(output, &health, (uint8_t)controller->timing.ticks, frames);
     for (size_t i = 0; i < SADDLE_WIRE_OUTPUT_FRAMES; ++i) {
-        saddle_can_frame_t frame = {.id = frames[i].id, .length = SADDLE_WIRE_LENGTH};
-        memcpy(frame.data, frames[i].data, sizeof frame.data);
-        controller->not_sent += !saddle_can_send(&frame);
+        send_frame(controller, &frames[i]);
     }
 }
 
@@ -71,6 +93,7 @@ static void tick(saddle_controller_t *controller, uint64_t due_us)
     saddle_timing_begin(&controller->timing, due_us, now_us(controller));
     const saddle_input_t *input = saddle_inbox_read(&controller->inbox, due_us);
     const saddle_status_t status = saddle_tick(&controller->context, input, &output);
+    keep_session(controller, &output);
     send_output(controller, &output);
     const uint64_t done_us = now_us(controller);
     saddle_timing_end(&controller->timing, next_us, done_us);
@@ -86,6 +109,12 @@ saddle_status_t saddle_controller_init(saddle_controller_t *controller,
     saddle_inbox_init(&controller->inbox, SADDLE_SOURCE_CAN);
     controller->inbox.lockstep = lockstep;
     return saddle_init(&controller->context, config);
+}
+
+void saddle_controller_require_codes(saddle_controller_t *controller,
+                                     const uint8_t key[SADDLE_CMAC_LENGTH])
+{
+    saddle_wire_require_auth(&controller->inbox.receiver, key);
 }
 
 void saddle_controller_step(saddle_controller_t *controller)

@@ -28,6 +28,11 @@ typedef struct {
 saddle_status_t saddle_controller_init(saddle_controller_t *controller,
                                        const saddle_config_t *config, bool lockstep);
 
+/** From now on require codes by this secret key of commands and times (docs/authentication.md). Call it
+ *  after saddle_controller_init(). The key is not kept, but what it becomes is. */
+void saddle_controller_require_codes(saddle_controller_t *controller,
+                                     const uint8_t key[SADDLE_CMAC_LENGTH]);
+
 /** Process received frames, and tick if a tick is due. Never waits. */
 void saddle_controller_step(saddle_controller_t *controller);
 

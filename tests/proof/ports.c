@@ -45,6 +45,12 @@ uint32_t saddle_clock_ticks_due(void)
 
 void saddle_watchdog_feed(void) {}
 
+bool saddle_random(uint32_t *bits)
+{
+    *bits = any_uint32;
+    return any_bool();
+}
+
 saddle_status_t saddle_init(saddle_context_t *context, const saddle_config_t *config)
 {
     (void)context;
@@ -121,7 +127,14 @@ int main(void)
     static saddle_controller_t controller;
     saddle_config_t config = any_config;
     read_settings(&config);
+    uint8_t key[SADDLE_CMAC_LENGTH];
+    for (size_t i = 0; i < SADDLE_CMAC_LENGTH; ++i) {
+        key[i] = any_uint8;
+    }
     (void)saddle_controller_init(&controller, &config, any_bool());
+    if (any_bool()) {
+        saddle_controller_require_codes(&controller, key);
+    }
     while (any_bool()) {
         read_serial_line();
         queue();

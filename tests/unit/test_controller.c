@@ -16,6 +16,7 @@ static uint32_t sending_us; /* what each frame takes */
 static uint32_t ticks_due;
 static uint32_t feeds;
 static bool flood;
+static uint32_t random_bits; /* 0: none */
 
 bool saddle_can_receive(saddle_can_frame_t *frame)
 {
@@ -55,6 +56,12 @@ void saddle_watchdog_feed(void)
     ++feeds;
 }
 
+bool saddle_random(uint32_t *bits)
+{
+    *bits = random_bits;
+    return random_bits != 0u;
+}
+
 void setUp(void)
 {
     memset(&coming, 0, sizeof coming);
@@ -62,6 +69,7 @@ void setUp(void)
     frames_sent = lost = sending_us = ticks_due = feeds = 0;
     now_us = 0;
     flood = false;
+    random_bits = 0;
     config = saddle_config_default(1.79f, 63.3f);
     TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_controller_init(&controller, &config, false));
 }
@@ -221,6 +229,66 @@ static void test_in_lockstep_a_set_makes_a_tick_due(void)
     TEST_ASSERT_EQUAL_UINT32(2, controller.timing.ticks);
 }
 
+static const uint8_t KEY[SADDLE_CMAC_LENGTH] = {7, 1, 9};
+
+/** With a code of that session and freshness. */
+static void bring_command(uint32_t session, uint16_t freshness)
+{
+    const saddle_command_t wanted = {.mode = SADDLE_COMMAND_WALK, .speed_m_s = 1.0f};
+    saddle_cmac_key_t key;
+    saddle_frame_t command, code;
+    saddle_cmac_prepare(&key, KEY);
+    saddle_wire_encode_command(&wanted, (uint8_t)freshness, &command);
+    saddle_wire_encode_code(&key, session, freshness, &command, &code);
+    bring(&code, now_us);
+    bring(&command, now_us);
+}
+
+static void test_commands_need_a_code_of_the_session_that_was_sent(void)
+{
+    saddle_controller_require_codes(&controller, KEY);
+    random_bits = 0x5EED1234u;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_WIRE_OUTPUT_FRAMES + 1u, frames_sent);
+    TEST_ASSERT_EQUAL_HEX16(0x13C, sent[0].id);
+    TEST_ASSERT_EQUAL_HEX32(0x5EED1234u, controller.inbox.receiver.guard.session);
+    bring_command(0x5EED1234u, 1);
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_COMMAND_WALK, controller.context.command.mode);
+    TEST_ASSERT_EQUAL_HEX32(0x5EED1234u, controller.inbox.receiver.guard.session);
+}
+
+static void test_commands_with_codes_of_another_session_are_rejected(void)
+{
+    saddle_controller_require_codes(&controller, KEY);
+    random_bits = 1;
+    timer(0);
+    bring_command(2, 1);
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_COMMAND_STAND, controller.context.command.mode);
+    TEST_ASSERT_EQUAL_UINT32(1, controller.inbox.receiver.bad_code);
+}
+
+static void test_without_random_bits_there_is_no_session_until_there_are(void)
+{
+    saddle_controller_require_codes(&controller, KEY);
+    timer(0);
+    bring_command(0, 1);
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(2u * SADDLE_WIRE_OUTPUT_FRAMES, frames_sent);
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_COMMAND_STAND, controller.context.command.mode);
+    random_bits = 3;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(3u * SADDLE_WIRE_OUTPUT_FRAMES + 1u, frames_sent);
+}
+
+static void test_where_no_codes_are_required_there_is_no_session(void)
+{
+    random_bits = 4;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_WIRE_OUTPUT_FRAMES, frames_sent);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -235,5 +303,9 @@ int main(void)
     RUN_TEST(test_frames_lost_by_the_board_are_reported);
     RUN_TEST(test_a_flood_does_not_delay_a_tick);
     RUN_TEST(test_in_lockstep_a_set_makes_a_tick_due);
+    RUN_TEST(test_commands_need_a_code_of_the_session_that_was_sent);
+    RUN_TEST(test_commands_with_codes_of_another_session_are_rejected);
+    RUN_TEST(test_without_random_bits_there_is_no_session_until_there_are);
+    RUN_TEST(test_where_no_codes_are_required_there_is_no_session);
     return UNITY_END();
 }

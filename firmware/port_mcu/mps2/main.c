@@ -15,6 +15,13 @@ extern char __stack_size[]; /* this one's address is the number of its bytes */
 
 static saddle_controller_t controller;
 
+/** This board has no source of random bits: it cannot require codes. */
+bool saddle_random(uint32_t *bits)
+{
+    (void)bits;
+    return false;
+}
+
 static uint32_t *stack_lowest(void)
 {
     return __stack - (uintptr_t)__stack_size / sizeof __stack[0];
