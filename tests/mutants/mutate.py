@@ -3,15 +3,15 @@
 usage: mutate.py PART SAMPLE SEED LEAST
 
 PART is core or wire. SAMPLE mutants, drawn with SEED (0: all there are), are compiled one by one,
-and the unit tests run until one fails. A mutant with the original's object code is none. Survivors
-are listed, but for those of equivalent.toml, which says why no test can tell them. Exit status 1
-if less than LEAST percent of the others are killed, by more than two standard errors of a sample.
+and the unit tests run until one fails; where none does, the hashes of same_bits.txt are compared. A
+mutant with the original's object code is none. Survivors are listed, but for those of
+equivalent.toml, which says why no test can tell them. Exit status 1 if less than LEAST percent of
+the others are killed, by more than two standard errors of a sample.
 """
 
 import math
 import random
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -37,6 +37,9 @@ INCLUDES = [
     *(BUILD / f for f in ("firmware/wire/signals", "tests/golden", "unity")),
 ]
 UNITY = ["-DUNITY_NAN_NOT_EQUAL_NAN", "-DUNITY_INCLUDE_DOUBLE", "-DUNITY_SUPPORT_64"]
+TARGETS = ROOT / "tests/targets"
+HASHES = ("same_bits", "sequences", "elementary")
+BITS = (TARGETS / "same_bits.txt").read_bytes()
 # Of the host process, and what takes a function's name.
 OTHER_TESTS = {"test_bus_link", "test_elementary"}
 
@@ -80,6 +83,7 @@ class Mutant(NamedTuple):
     number: int
     before: str
     after: str
+    change: str  # what the operator replaces by what, such as "+ by -"
 
 
 class Workshop(NamedTuple):
@@ -114,7 +118,11 @@ def mutants_of(file: Path) -> Iterator[Mutant]:
         for pattern, replacement in OPERATORS:
             for match in re.finditer(pattern, code):
                 after = code[: match.start()] + match.expand(replacement) + code[match.end() :]
-                yield Mutant(file, number, code, after)
+                yield Mutant(file, number, code, after, change_of(match, replacement))
+
+
+def change_of(match: re.Match[str], replacement: str) -> str:
+    return f"{match[0].strip()} by {match.expand(replacement).strip()}"
 
 
 def compile_c(source: Path, target: Path, *flags: str) -> bool:
@@ -143,7 +151,7 @@ def link(workshop: Workshop, objects: dict[Path, Path]) -> None:
 
 
 def build(folder: Path) -> tuple[dict[Path, Path], list[Path]]:
-    """All objects, and the test programs, whose library each worker has for itself."""
+    """All objects, and the programs that test them, whose library each worker has for itself."""
     objects = objects_of(folder)
     with ThreadPoolExecutor(max_workers=WORKERS) as pool:
         flags = ("-c", version_flag())
@@ -154,41 +162,43 @@ def build(folder: Path) -> tuple[dict[Path, Path], list[Path]]:
         tests = [
             t for t in sorted((ROOT / "tests/unit").glob("test_*.c")) if t.stem not in OTHER_TESTS
         ]
-        programs = {test: folder / test.stem for test in tests}
-        flags = (version_flag(), *UNITY, str(folder / "unity.o"), f"-L{folder}")
+        programs = {(test, folder / "unity.o"): folder / test.stem for test in tests}
+        programs[tuple(TARGETS / f"{name}.c" for name in HASHES)] = folder / HASHES[0]
+        flags = (version_flag(), *UNITY, f"-L{folder}")
         linked = (
             "-Wl,-rpath,.",
             "-Wl,--unresolved-symbols=ignore-in-shared-libs",
             "-lfirmware",
             "-lm",
         )
-        done = list(pool.map(lambda p: compile_test(p[0], p[1], flags, linked), programs.items()))
+        done = list(pool.map(lambda p: compile_test(*p, flags, linked), programs.items()))
     if not all(done):
         sys.exit("the unit tests do not compile")
     return objects, list(programs.values())
 
 
 def compile_test(
-    test: Path, program: Path, flags: tuple[str, ...], linked: tuple[str, ...]
+    sources: tuple[Path, ...], program: Path, flags: tuple[str, ...], linked: tuple[str, ...]
 ) -> bool:
     command = ["gcc", "-std=c99", "-O1", "-w", *(f"-I{folder}" for folder in INCLUDES)]
-    command += [str(test), *flags, *linked, "-o", str(program)]
+    command += [*map(str, sources), *flags, *linked, "-o", str(program)]
     return subprocess.run(command, capture_output=True).returncode == 0
 
 
-def survives(workshop: Workshop, programs: list[Path], module: str) -> bool:
+def passes(program: Path, folder: Path) -> bool:
+    try:
+        done = subprocess.run([program], cwd=folder, capture_output=True, timeout=TIMEOUT_S)
+    except subprocess.TimeoutExpired:
+        return False
+    return done.returncode == 0 and (program.name != HASHES[0] or done.stdout == BITS)
+
+
+def fate(workshop: Workshop, programs: list[Path], module: str) -> str:
     """The module's own test first: most die there."""
-    own_first = sorted(programs, key=lambda program: program.name != f"test_{module}")
-    for program in own_first:
-        try:
-            done = subprocess.run(
-                [program], cwd=workshop.folder, capture_output=True, timeout=TIMEOUT_S
-            )
-        except subprocess.TimeoutExpired:
-            return False
-        if done.returncode:
-            return False
-    return True
+    for program in sorted(programs, key=lambda program: program.name != f"test_{module}"):
+        if not passes(program, workshop.folder):
+            return "hashed" if program.name == HASHES[0] else "killed"
+    return "survived"
 
 
 class Run:
@@ -198,7 +208,7 @@ class Run:
         self.folder = folder
         self.objects, programs = build(folder)
         times = {program: self.time_of(program) for program in programs}
-        self.programs = sorted(times, key=lambda program: times[program])
+        self.programs = sorted(times, key=lambda p: (p.name == HASHES[0], times[p]))
         self.workshops: SimpleQueue[Workshop] = SimpleQueue()
         for number in range(WORKERS):
             workshop = Workshop(folder / f"worker{number}")
@@ -207,13 +217,12 @@ class Run:
 
     def time_of(self, program: Path) -> float:
         began = monotonic()
-        done = subprocess.run([program], cwd=self.folder, capture_output=True)
-        if done.returncode:
+        if not passes(program, self.folder):
             sys.exit(f"{program.name} fails without a mutant")
         return monotonic() - began
 
     def outcome(self, mutant: Mutant) -> str:
-        """killed, survived, same (code) or invalid."""
+        """killed by a unit test, hashed: by the hashes alone, survived, same (code) or invalid."""
         workshop = self.workshops.get()
         try:
             lines = mutant.file.read_text(encoding="utf-8").splitlines()
@@ -223,33 +232,34 @@ class Run:
             mutated = workshop.folder / "mutant.o"
             if not compile_c(source, mutated, "-c", version_flag()):
                 return "invalid"
-            original = workshop.folder / "original.o"
-            shutil.copy(mutant.file, source)
-            compile_c(source, original, "-c", version_flag())
-            if mutated.read_bytes() == original.read_bytes():
+            if mutated.read_bytes() == self.objects[mutant.file].read_bytes():
                 return "same"
             link(workshop, self.objects | {mutant.file: mutated})
-            return "survived" if survives(workshop, self.programs, mutant.file.stem) else "killed"
+            return fate(workshop, self.programs, mutant.file.stem)
         finally:
             self.workshops.put(workshop)
 
 
-def equivalents() -> set[tuple[str, str, str]]:
-    listed = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))["mutant"]
-    return {(m["file"], m["before"], m["after"]) for m in listed}
+class Equivalents:
+    """What no test can tell: single mutants, by their lines, or a change wherever a file has it."""
 
+    def __init__(self) -> None:
+        listed = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))["mutant"]
+        self.lines = {(m["file"], m["before"], m["after"]) for m in listed if "before" in m}
+        self.changes = {(m["file"], m["change"]) for m in listed if "change" in m}
 
-def key_of(mutant: Mutant) -> tuple[str, str, str]:
-    name = str(mutant.file.relative_to(ROOT))
-    return name, mutant.before.strip(), mutant.after.strip()
+    def __contains__(self, mutant: Mutant) -> bool:
+        name = str(mutant.file.relative_to(ROOT))
+        lines = name, mutant.before.strip(), mutant.after.strip()
+        return lines in self.lines or (name, mutant.change) in self.changes
 
 
 def main() -> None:
     part, (sample, seed, least) = sys.argv[1], map(int, sys.argv[2:5])
     every = [m for file in sorted(PARTS[part].rglob("*.c")) for m in mutants_of(file)]
     random.Random(seed).shuffle(every)
-    excused = equivalents()
-    drawn = [m for m in every if key_of(m) not in excused][: sample or None]
+    excused = Equivalents()
+    drawn = [m for m in every if m not in excused][: sample or None]
     with tempfile.TemporaryDirectory() as folder:
         run = Run(Path(folder))
         with ThreadPoolExecutor(max_workers=WORKERS) as pool:
@@ -258,12 +268,13 @@ def main() -> None:
         if outcome == "survived":
             place = f"{mutant.file.relative_to(ROOT)}:{mutant.number + 1}"
             print(f"{place}: survived: `{mutant.before.strip()}` -> `{mutant.after.strip()}`")
-    killed, survived = outcomes.count("killed"), outcomes.count("survived")
+    by_tests, survived = outcomes.count("killed"), outcomes.count("survived")
+    killed = by_tests + outcomes.count("hashed")
     share = killed / max(1, killed + survived)
     print(
-        f"mutants: {part}: {killed} of {killed + survived} killed, {100 * share:.1f} %, of "
-        f"{len(every)} there are (seed {seed}; {outcomes.count('same')} with the same code, "
-        f"{outcomes.count('invalid')} do not compile)"
+        f"mutants: {part}: {killed} of {killed + survived} killed, {100 * share:.1f} %, "
+        f"{by_tests} by the unit tests; of {len(every)} there are (seed {seed}; "
+        f"{outcomes.count('same')} with the same code, {outcomes.count('invalid')} do not compile)"
     )
     wanted = least / 100
     error = math.sqrt(wanted * (1 - wanted) / max(1, killed + survived)) if sample else 0.0

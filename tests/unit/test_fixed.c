@@ -136,6 +136,27 @@ static void test_any_bits_give_a_number_within_the_range(void)
     }
 }
 
+static void test_ends_of_the_range(void)
+{
+    const uint32_t second = saddle_time_from_s(1.0f);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 4.0, saddle_speed_to_m_s(INT64_MAX));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -4.0, saddle_speed_to_m_s(INT64_MIN));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 2.0, metres(saddle_distance(INT64_MAX, second)));
+    TEST_ASSERT_TRUE(saddle_distance(0, second) == 0);
+    TEST_ASSERT_TRUE(saddle_distance(-1, second) == 0);
+    TEST_ASSERT_EQUAL_UINT32(0, saddle_time_from_s(-1.0f));
+    TEST_ASSERT_TRUE(saddle_speed_change(1.0f, UINT32_MAX) == saddle_speed_change(1.0f, 10000000u));
+    const saddle_fixed_t speed_max = saddle_speed_from_m_s(4.0f);
+    TEST_ASSERT_TRUE(saddle_speed_sum(speed_max, speed_max) == speed_max);
+    TEST_ASSERT_TRUE(saddle_speed_sum(-speed_max, -speed_max) == -speed_max);
+    const saddle_fixed_t max = saddle_position_from_m(2.0f);
+    TEST_ASSERT_TRUE(saddle_position_sum(max, 1) == max);
+    TEST_ASSERT_TRUE(saddle_position_sum(-max, -1) == -max);
+    TEST_ASSERT_TRUE(saddle_position_sum(max - 2, 1) == max - 1);
+    TEST_ASSERT_TRUE(saddle_position_sum(2 - max, -1) == 1 - max);
+    TEST_ASSERT_TRUE(saddle_position_sum(max, INT64_MIN) == 0);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -145,5 +166,6 @@ int main(void)
     RUN_TEST(test_distance_is_speed_times_time);
     RUN_TEST(test_change_is_rate_times_time);
     RUN_TEST(test_any_bits_give_a_number_within_the_range);
+    RUN_TEST(test_ends_of_the_range);
     return UNITY_END();
 }

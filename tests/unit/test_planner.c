@@ -259,22 +259,22 @@ static void test_shape_is_in_the_steady_plan(void)
 }
 
 /* From behind the stance foot, where it stood until the last landing, to ahead of it. */
-static void test_swing_of_a_person_is_in_the_steady_plan(void)
+static void check_swing_with_skew(double skew)
 {
     config.swing_begin = -0.32f;
     config.swing_end = 1.04f;
-    config.swing_skew = 1.47f;
+    config.swing_skew = (float)skew;
     for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
         const walk_t walk = walk_at((double)SPEEDS[i]);
-        const double s_end = pow(1.32 / 1.36, 1.47);
-        const double s_lift = pow(0.32 / 1.36, 1.47);
+        const double s_end = pow(1.32 / 1.36, skew);
+        const double s_lift = pow(0.32 / 1.36, skew);
         const double full = pow(s_end, 3) * (10.0 + s_end * (6.0 * s_end - 15.0));
         const double lift = pow(s_lift, 3) * (10.0 + s_lift * (6.0 * s_lift - 15.0)) / full;
         join(SPEEDS[i]);
         for (double t = 0.0; t < 4.2 * walk.step_time; t += 0.008) {
             const double step = t / walk.step_time + 0.5;
             const double p = step - floor(step);
-            const double s = pow((p + 0.32) / 1.36, 1.47);
+            const double s = pow((p + 0.32) / 1.36, skew);
             const double share = pow(s, 3) * (10.0 + s * (6.0 * s - 15.0)) / full;
             const double f = fmin(2.0 * p, 1.0);
             const double rest = 1.0 - pow(f, 3) * (10.0 + f * (6.0 * f - 15.0));
@@ -286,6 +286,12 @@ static void test_swing_of_a_person_is_in_the_steady_plan(void)
             TEST_ASSERT_EQUAL_HEX32(0, tick(8000));
         }
     }
+}
+
+static void test_swing_of_a_person_is_in_the_steady_plan(void)
+{
+    check_swing_with_skew(1.47);
+    check_swing_with_skew(0.75);
 }
 
 static void check_heel_strikes_at(double strike_share)
