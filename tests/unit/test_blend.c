@@ -57,11 +57,18 @@ static void test_zero_length_gives_no_mismatch(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, saddle_blend_at(&none, 0.0f).slope);
 }
 
+static void test_shortest_length_fades_too(void)
+{
+    const saddle_blend_t shortest = {{0.1f, 0.0f}, 0.0f, 1.0e-4f};
+    ASSERT_SAME_FLOAT(0.1f, saddle_blend_at(&shortest, 0.0f).value);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_mismatch_fades_from_its_value_to_zero_and_stays_there);
     RUN_TEST(test_slope_is_the_derivative);
     RUN_TEST(test_zero_length_gives_no_mismatch);
+    RUN_TEST(test_shortest_length_fades_too);
     return UNITY_END();
 }

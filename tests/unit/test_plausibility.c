@@ -61,6 +61,21 @@ static void move(float vx_m_s, float vy_m_s)
 
 /* ---- age and range ------------------------------------------------------------------------- */
 
+static void test_no_measurement_never_came(void)
+{
+    const saddle_measurement_t none = saddle_no_measurement();
+    ASSERT_SAME_FLOAT(0.0f, none.com.height_m);
+    ASSERT_SAME_FLOAT(0.0f, none.com.velocity_m_s.x);
+    ASSERT_SAME_FLOAT(0.0f, none.com.velocity_m_s.y);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US, none.com.age_us);
+    for (int side = 0; side < 2; side++) {
+        ASSERT_SAME_FLOAT(0.0f, none.foot[side].cop_m.x);
+        ASSERT_SAME_FLOAT(0.0f, none.foot[side].cop_m.y);
+        TEST_ASSERT_FALSE(none.foot[side].contact);
+        TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US, none.foot[side].age_us);
+    }
+}
+
 static void test_good_measurement_has_no_fault(void)
 {
     TEST_ASSERT_EQUAL_HEX32(0, check_measurement());
@@ -524,6 +539,9 @@ static void test_feet_that_cross_by_too_much_are_contradictory(void)
         measured.foot[SADDLE_RIGHT].cop_m.y = table[i].right_y;
         TEST_ASSERT_EQUAL_HEX32(table[i].fault, check_again());
     }
+    measured.foot[SADDLE_LEFT].cop_m.y = 0.0f;
+    measured.foot[SADDLE_RIGHT].cop_m.y = config.crossing_max_m;
+    TEST_ASSERT_EQUAL_HEX32(0, check_again());
     TEST_ASSERT_TRUE(((uint32_t)SADDLE_FAULT_FEET_CROSSED & SADDLE_FAULTS_FEET) != 0u);
 }
 
@@ -541,6 +559,7 @@ static void test_feet_that_are_not_measured_are_neither_airborne_nor_crossed(voi
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_no_measurement_never_came);
     RUN_TEST(test_good_measurement_has_no_fault);
     RUN_TEST(test_age_at_the_limit_is_fresh_and_above_it_stale);
     RUN_TEST(test_absurd_number_in_any_field_is_a_range_fault);

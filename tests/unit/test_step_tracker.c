@@ -298,6 +298,7 @@ static void test_last_step_is_forgotten_after_step_time_max(void)
         track();
         TEST_ASSERT_EQUAL(tick <= 12, tracker.v_comp_known);
         TEST_ASSERT_EQUAL(tick <= 12, tracker.half_step_known);
+        TEST_ASSERT_TRUE(tracker.since_strike_s <= 1.0f);
     }
     strike_with(SADDLE_LEFT); /* ends no step: the time to it was no step */
     TEST_ASSERT_TRUE(tracker.half_step_known);
