@@ -17,7 +17,8 @@ from typing import Any, NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
 JUSTIFIED = Path(__file__).with_name("justified.toml")
-FIRMWARE = [ROOT / "firmware" / name for name in ("core/src", "wire", "port_common", "port_mcu")]
+PARTS = ["core/src", "joints/src", "wire", "port_common", "port_mcu"]
+FIRMWARE = [ROOT / "firmware" / part for part in PARTS]
 LLVM = "22"
 
 

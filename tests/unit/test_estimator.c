@@ -2,6 +2,7 @@
  *  an IMU by differences in double, and noise of ordinary sensors. */
 #include "core_test.h"
 
+#include <fenv.h>
 #include <saddlewalk/estimator.h>
 #include <stdio.h>
 
@@ -372,6 +373,33 @@ static void test_nothing_is_trusted_before_the_tilt_has_settled(void)
     TEST_ASSERT_EQUAL_UINT32(0u, estimate.measurement.foot[1].age_us);
 }
 
+/* The first update, with these loads and what the accelerometer reads of gravity. */
+static void start_with(float left_n, float right_n, saddle_vec3_t up)
+{
+    saddle_sensors_t sensors = sensors_at(0.0, 0.0);
+    sensors.load_n[SADDLE_LEFT] = left_n;
+    sensors.load_n[SADDLE_RIGHT] = right_n;
+    sensors.accelerometer_m_s2 = up;
+    TEST_ASSERT_EQUAL(SADDLE_OK, saddle_estimator_init(&estimator, &legs, &config));
+    TEST_ASSERT_EQUAL(SADDLE_OK, saddle_estimator_update(&estimator, &sensors, &estimate));
+}
+
+static void test_it_starts_from_the_foot_that_carries_or_in_the_air_from_gravity(void)
+{
+    const float g = (float)GRAVITY;
+    const saddle_vec3_t tilted = {0.6f * g, 0.0f, 0.8f * g};
+    start_with(100.0f, 500.0f, tilted); /* feet go before */
+    TEST_ASSERT_EQUAL_UINT(SADDLE_RIGHT, estimate.anchor_foot);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, cos(0.05), (double)estimate.trunk.axes.z.z);
+    start_with(0.0f, 0.0f, tilted);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.6, (double)estimate.trunk.axes.x.z);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.8, (double)estimate.trunk.axes.z.z);
+    start_with(0.0f, 0.0f, (saddle_vec3_t){0.0f, 0.0f, -g}); /* no tilt leads there */
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 1.0, (double)estimate.trunk.axes.z.z);
+    start_with(0.0f, 0.0f, (saddle_vec3_t){NAN, 0.0f, g});
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 1.0, (double)estimate.trunk.axes.z.z);
+}
+
 /* ---- faults --------------------------------------------------------------------------------- */
 
 /* In the middle of a step on the left foot. */
@@ -614,7 +642,20 @@ static void test_without_init_there_is_no_estimate(void)
     TEST_ASSERT_EQUAL(SADDLE_ERROR_CONFIG, saddle_estimator_init(&blank, &legs, &config));
     TEST_ASSERT_EQUAL(SADDLE_ERROR_UNINITIALISED,
                       saddle_estimator_update(&blank, &sensors, &estimate));
+    config = saddle_estimator_default();
+    legs.thigh_m = -1.0f;
+    TEST_ASSERT_EQUAL(SADDLE_ERROR_CONFIG, saddle_estimator_init(&blank, &legs, &config));
 }
+
+#if !defined SADDLE_EMULATED && defined FE_UPWARD
+static void test_another_rounding_mode_is_refused(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, fesetround(FE_UPWARD));
+    const saddle_status_t status = saddle_estimator_init(&estimator, &legs, &config);
+    fesetround(FE_TONEAREST);
+    TEST_ASSERT_EQUAL(SADDLE_ERROR_BUILD, status);
+}
+#endif
 
 static void test_each_setting_out_of_its_range_is_named(void)
 {
@@ -644,6 +685,7 @@ int main(void)
     RUN_TEST(test_a_walk_does_not_teach_a_bias);
     RUN_TEST(test_a_bias_is_learned_while_standing);
     RUN_TEST(test_nothing_is_trusted_before_the_tilt_has_settled);
+    RUN_TEST(test_it_starts_from_the_foot_that_carries_or_in_the_air_from_gravity);
     RUN_TEST(test_a_slipping_foot_is_found_and_believed_again);
     RUN_TEST(test_saturated_sensors_are_said);
     RUN_TEST(test_an_old_or_absurd_imu_is_said_and_the_ages_grow);
@@ -657,6 +699,9 @@ int main(void)
     RUN_TEST(test_whatever_comes_the_estimate_is_finite_and_recovers);
     RUN_TEST(test_a_gap_in_time_starts_it_anew);
     RUN_TEST(test_without_init_there_is_no_estimate);
+#if !defined SADDLE_EMULATED && defined FE_UPWARD
+    RUN_TEST(test_another_rounding_mode_is_refused);
+#endif
     RUN_TEST(test_each_setting_out_of_its_range_is_named);
     return UNITY_END();
 }

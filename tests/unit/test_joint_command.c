@@ -121,6 +121,14 @@ static void test_who_stands_evenly_shares_the_load_evenly(void)
     }
 }
 
+static void test_feet_in_one_place_share_the_load_evenly(void)
+{
+    estimate.body.foot[1].sole_m = estimate.body.foot[0].sole_m;
+    command();
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.5, (double)commands.load_share[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.5, (double)commands.load_share[1]);
+}
+
 /* ---- balance -------------------------------------------------------------------------------- */
 
 static void test_the_cop_goes_beyond_the_error_of_the_xcom(void)
@@ -277,6 +285,10 @@ static void test_an_intent_that_is_none_moves_nothing(void)
     command();
     TEST_ASSERT_TRUE(commands.fallback);
     intent = good;
+    intent.role[0] = SADDLE_LEG_TRAILS + 1;
+    command();
+    TEST_ASSERT_TRUE(commands.fallback);
+    intent = good;
     intent.leading = 2;
     command();
     TEST_ASSERT_TRUE(commands.fallback);
@@ -327,6 +339,7 @@ int main(void)
     RUN_TEST(test_on_one_leg_the_torques_are_the_work_of_the_weight);
     RUN_TEST(test_a_swinging_leg_carries_its_own_weight);
     RUN_TEST(test_who_stands_evenly_shares_the_load_evenly);
+    RUN_TEST(test_feet_in_one_place_share_the_load_evenly);
     RUN_TEST(test_the_cop_goes_beyond_the_error_of_the_xcom);
     RUN_TEST(test_leaning_to_a_side_loads_that_leg);
     RUN_TEST(test_a_trunk_that_leans_is_turned_back);

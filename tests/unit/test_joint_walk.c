@@ -2,6 +2,7 @@
  *  should do is checked by forward kinematics. */
 #include "core_test.h"
 
+#include <fenv.h>
 #include <saddlewalk/joint_walk.h>
 
 #define STEP_US 1000u
@@ -18,8 +19,10 @@ static saddle_joint_walk_config_t config;
 static saddle_joint_walk_t walk;
 static saddle_estimate_t estimate;
 static saddle_intent_t intent;
-static saddle_vec2_t xcom_error_m; /* of the puppet */
-static float light;                /* share of a load that the puppet shows */
+static saddle_vec2_t xcom_error_m;      /* of the puppet */
+static float light;                     /* share of a load that the puppet shows */
+static uint64_t stops_us;               /* from then on the command is to stand */
+static const saddle_verdict_t *verdict; /* that the walk hears of */
 
 static const saddle_axes_t WORLD = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
 
@@ -43,6 +46,8 @@ void setUp(void)
     config = saddle_joint_walk_default();
     xcom_error_m = (saddle_vec2_t){0.0f, 0.0f};
     light = 1.0f;
+    stops_us = UINT64_MAX;
+    verdict = &output.verdict;
     memset(&plan, 0, sizeof plan);
     begin();
 }
@@ -78,22 +83,35 @@ static void pose(void)
 
 static void update(void)
 {
-    const saddle_joint_walk_input_t at = {input.time_us, &plan, &output.verdict};
+    const saddle_joint_walk_input_t at = {input.time_us, &plan, verdict};
     TEST_ASSERT_EQUAL(SADDLE_OK, saddle_joint_walk_update(&walk, &at, &estimate, &intent));
 }
 
-/* One millisecond of a walk at 0.8 m/s. */
-static void step(void)
+/* One millisecond of the plan of a walk at 0.8 m/s, and the puppet in it. */
+static void move_puppet(void)
 {
     const uint64_t now_us = input.time_us + STEP_US;
+    const bool walks = now_us >= STANDS_US && now_us < stops_us;
     input.time_us = now_us;
-    input.command.mode = now_us < STANDS_US ? SADDLE_COMMAND_STAND : SADDLE_COMMAND_WALK;
+    input.command.mode = walks ? SADDLE_COMMAND_WALK : SADDLE_COMMAND_STAND;
     input.command.speed_m_s = 0.8f;
     if ((now_us / STEP_US) % TICK_STEPS == 1u) {
         TEST_ASSERT_EQUAL(SADDLE_OK, saddle_tick(&core, &input, &output));
     }
     TEST_ASSERT_EQUAL(SADDLE_OK, saddle_plan_at(&core, now_us, &plan));
     pose();
+}
+
+static void step(void)
+{
+    move_puppet();
+    update();
+}
+
+/* The puppet stays while a millisecond passes. */
+static void stay(void)
+{
+    input.time_us += STEP_US;
     update();
 }
 
@@ -151,15 +169,21 @@ static void test_who_stands_stands_on_both_feet(void)
 static void test_without_a_plan_the_cop_goes_between_the_feet(void)
 {
     step_until_us(900000u);
-    plan.valid = false;
-    input.time_us += STEP_US;
-    update();
-    const saddle_vec3_t left = estimate.body.foot[0].sole_m;
-    const saddle_vec3_t right = estimate.body.foot[1].sole_m;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.5 * (double)(left.x + right.x), (double)intent.cop_m.x);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.5 * (double)(left.y + right.y), (double)intent.xcom_m.y);
-    TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[0]);
-    TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[1]);
+    const saddle_plan_t good = plan;
+    for (unsigned kind = 0; kind < 3u; kind++) {
+        plan = good;
+        plan.valid = kind != 0u;
+        plan.support = kind == 1u ? SADDLE_RIGHT + 1u : plan.support;
+        const saddle_joint_walk_input_t at = {input.time_us, kind == 2u ? NULL : &plan, NULL};
+        TEST_ASSERT_EQUAL(SADDLE_OK, saddle_joint_walk_update(&walk, &at, &estimate, &intent));
+        const saddle_vec3_t left = estimate.body.foot[0].sole_m;
+        const saddle_vec3_t right = estimate.body.foot[1].sole_m;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.5 * (double)(left.x + right.x), (double)intent.cop_m.x);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.5 * (double)(left.y + right.y), (double)intent.xcom_m.y);
+        TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[0]);
+        TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[1]);
+        input.time_us += STEP_US;
+    }
 }
 
 static void test_legs_do_what_the_plan_has_them_for(void)
@@ -193,18 +217,63 @@ static void test_a_foot_that_carries_nothing_lifts_before_its_time(void)
     }
     unsigned trailed = 0;
     for (; intent.role[swing_side()] == SADDLE_LEG_TRAILS; trailed++) {
-        const uint64_t now_us = input.time_us + STEP_US;
-        input.time_us = now_us;
-        if ((now_us / STEP_US) % TICK_STEPS == 1u) {
-            (void)saddle_tick(&core, &input, &output);
-        }
-        (void)saddle_plan_at(&core, now_us, &plan);
-        pose();
+        move_puppet();
         estimate.load_n[swing_side()] = 5.0f;
         estimate.load_n[plan.support] = 600.0f;
         update();
     }
     TEST_ASSERT_UINT_WITHIN(2u, 6u, trailed);
+}
+
+static void test_a_walk_that_stops_ends_side_by_side(void)
+{
+    step_until_us(3000000u);
+    stops_us = input.time_us;
+    while (plan.speed_m_s > 0.0f) {
+        step();
+        if (plan.landing_m.x <= 0.0f && plan.time_to_via_point_s < 0.005f) {
+            const saddle_vec3_t at = reference_m(swing_side());
+            TEST_ASSERT_DOUBLE_WITHIN(0.01, (double)plan.foot_m[plan.support].x, (double)at.x);
+            TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.0, (double)at.z);
+        }
+    }
+    step_until_us(input.time_us + 1000000u); /* the load comes back to the swing foot */
+    TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[0]);
+    TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.0, 1.0, (double)intent.trailing_share_max);
+}
+
+/* The first moment of a stop that begins on `stance` at which the last swing would. */
+static void stop_until_the_last_swing(unsigned stance)
+{
+    setUp();
+    step_until_us(3000000u);
+    while (plan.support != stance) {
+        step();
+    }
+    stops_us = input.time_us;
+    while (!(plan.landing_m.x <= 0.0f) || intent.role[swing_side()] != SADDLE_LEG_TRAILS) {
+        step();
+    }
+}
+
+static void test_the_last_swing_waits_while_the_xcom_would_fall_out_or_past_it(void)
+{
+    const float errors_m[] = {0.0f, 0.12f, -0.12f};
+    for (unsigned stance = 0; stance < 2u; stance++) {
+        for (size_t i = 0; i < COUNT_OF(errors_m); i++) {
+            stop_until_the_last_swing(stance);
+            xcom_error_m.y = errors_m[i];
+            for (unsigned n = 0; n < 20u; n++) {
+                pose();
+                estimate.load_n[swing_side()] = 0.0f; /* which the last swing does not lift by */
+                stay();
+            }
+            const bool waits = intent.role[swing_side()] == SADDLE_LEG_STANDS;
+            TEST_ASSERT_EQUAL(i != 0u, waits);
+            TEST_ASSERT_TRUE(!waits || intent.trailing_share_max == 1.0f);
+        }
+    }
 }
 
 /* ---- swings --------------------------------------------------------------------------------- */
@@ -279,6 +348,76 @@ static void test_in_need_the_foot_goes_to_the_recovery_step(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.02, (double)plan.landing_m.y + 0.2, (double)at.y);
 }
 
+/* Where a swing lands under a verdict that is changed by `change`. */
+static saddle_vec3_t landing_under(void (*change)(saddle_verdict_t *changed, unsigned swing))
+{
+    setUp();
+    step_until_us(3000000u);
+    step_into_a_swing(0u);
+    while (plan.time_to_toe_off_s > 0.005f) {
+        move_puppet();
+        output.verdict.recovery.found = false;
+        change(&output.verdict, swing_side());
+        update();
+    }
+    return reference_m(swing_side());
+}
+
+static void no_recovery(saddle_verdict_t *changed, unsigned swing)
+{
+    (void)changed;
+    (void)swing;
+}
+
+static void no_verdict(saddle_verdict_t *changed, unsigned swing)
+{
+    (void)changed;
+    (void)swing;
+    verdict = NULL;
+}
+
+static void recovery_at(saddle_verdict_t *changed, unsigned foot, float along_m, float across_m)
+{
+    const saddle_vec3_t stance = plan.foot_m[plan.support];
+    const saddle_vec2_t landing_m = {plan.landing_m.x - stance.x + along_m,
+                                     plan.landing_m.y - stance.y + across_m};
+    changed->recovery = (saddle_recovery_t){true, false, (uint8_t)foot, landing_m, 0.1f};
+    changed->xcom_deviation_m = (saddle_vec2_t){0.14f, 0.0f};
+}
+
+static void of_the_other_foot(saddle_verdict_t *changed, unsigned swing)
+{
+    recovery_at(changed, 1u - swing, 0.0f, 0.2f);
+}
+
+static void nearby(saddle_verdict_t *changed, unsigned swing)
+{
+    recovery_at(changed, swing, 0.5f * config.nearby_along_m, 0.5f * config.nearby_across_m);
+}
+
+static void without_need(saddle_verdict_t *changed, unsigned swing)
+{
+    recovery_at(changed, swing, 0.0f, 0.2f);
+    changed->xcom_deviation_m = (saddle_vec2_t){0.0f, 0.0f};
+}
+
+static void ahead(saddle_verdict_t *changed, unsigned swing)
+{
+    recovery_at(changed, swing, 0.1f, 0.0f);
+}
+
+static void test_the_recovery_step_is_taken_in_need_only(void)
+{
+    void (*const ignored[])(saddle_verdict_t *, unsigned) = {no_verdict, of_the_other_foot, nearby,
+                                                             without_need};
+    const saddle_vec3_t planned = landing_under(no_recovery);
+    for (size_t i = 0; i < COUNT_OF(ignored); i++) {
+        const saddle_vec3_t at = landing_under(ignored[i]);
+        TEST_ASSERT_EQUAL_MEMORY(&planned, &at, sizeof at);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.1, (double)(landing_under(ahead).x - planned.x));
+}
+
 static void test_a_foot_that_has_not_landed_reaches_down(void)
 {
     step_until_us(3000000u);
@@ -312,10 +451,42 @@ static void test_a_foot_that_carries_early_has_landed(void)
     }
     TEST_ASSERT_EQUAL(SADDLE_LEG_SWINGS, intent.role[side]);
     estimate.load_n[side] = 61.0f;
-    input.time_us += STEP_US;
-    update();
+    stay();
     TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[side]);
     TEST_ASSERT_EQUAL(side, intent.leading);
+    for (unsigned n = 0; n < 300u; n++) { /* the plan is late, and the foot no trailing one */
+        estimate.load_n[side] = 0.0f;
+        stay();
+        TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[side]);
+    }
+}
+
+static void test_a_foot_that_is_due_lands_even_if_the_plan_has_not_gone_on(void)
+{
+    step_until_us(3000000u);
+    step_into_a_swing(300u);
+    const unsigned side = swing_side();
+    plan.time_to_toe_off_s = 0.0f;
+    stay();
+    TEST_ASSERT_EQUAL(side, intent.leading);
+    stay(); /* and stands though it is due */
+    TEST_ASSERT_EQUAL(side, intent.leading);
+}
+
+static void test_the_first_swing_touches_the_ground_without_landing(void)
+{
+    step_until_us(STANDS_US);
+    while (intent.role[swing_side()] != SADDLE_LEG_SWINGS) {
+        step();
+    }
+    const unsigned side = swing_side();
+    while (plan.time_to_toe_off_s > 0.1f) {
+        step();
+    }
+    estimate.load_n[side] = 61.0f;
+    stay();
+    TEST_ASSERT_EQUAL(SADDLE_LEG_SWINGS, intent.role[side]);
+    TEST_ASSERT_EQUAL(1u - side, intent.leading);
 }
 
 static void test_a_foot_on_its_toe_is_put_down_by_the_plan_not_at_once(void)
@@ -329,12 +500,13 @@ static void test_a_foot_on_its_toe_is_put_down_by_the_plan_not_at_once(void)
     estimate.body.foot[side].axes.x = (saddle_vec3_t){0.995f, 0.0f, -0.1f};
     estimate.body.foot[side].axes.z = (saddle_vec3_t){0.1f, 0.0f, 0.995f};
     plan.speed_m_s = 0.0f; /* both feet stand now */
-    input.time_us += STEP_US;
-    update();
+    stay();
+    TEST_ASSERT_EQUAL(SADDLE_LEG_TRAILS, intent.role[side]);
+    plan.valid = false; /* nor does anybody know how it is to be tilted */
+    stay();
     TEST_ASSERT_EQUAL(SADDLE_LEG_TRAILS, intent.role[side]);
     estimate.body.foot[side].axes = WORLD; /* its heel is down */
-    input.time_us += STEP_US;
-    update();
+    stay();
     TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[side]);
 }
 
@@ -390,6 +562,10 @@ static void test_after_a_gap_it_starts_anew(void)
     update();
     TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[0]);
     TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[1]);
+    step_into_a_swing(50u);
+    update(); /* nor is there a time in which a rate could change */
+    TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[0]);
+    TEST_ASSERT_EQUAL(SADDLE_LEG_STANDS, intent.role[1]);
 }
 
 static void test_before_its_start_it_has_no_intent(void)
@@ -404,7 +580,20 @@ static void test_before_its_start_it_has_no_intent(void)
     TEST_ASSERT_EQUAL(SADDLE_ERROR_CONFIG, saddle_joint_walk_init(&walk, &legs, &config));
     TEST_ASSERT_EQUAL(SADDLE_ERROR_UNINITIALISED,
                       saddle_joint_walk_update(&walk, &at, &estimate, &intent));
+    config = saddle_joint_walk_default();
+    legs.thigh_m = -1.0f;
+    TEST_ASSERT_EQUAL(SADDLE_ERROR_CONFIG, saddle_joint_walk_init(&walk, &legs, &config));
 }
+
+#if !defined SADDLE_EMULATED && defined FE_UPWARD
+static void test_another_rounding_mode_is_refused(void)
+{
+    TEST_ASSERT_EQUAL_INT(0, fesetround(FE_UPWARD));
+    const saddle_status_t status = saddle_joint_walk_init(&walk, &legs, &config);
+    fesetround(FE_TONEAREST);
+    TEST_ASSERT_EQUAL(SADDLE_ERROR_BUILD, status);
+}
+#endif
 
 static void test_each_gain_out_of_its_range_is_named(void)
 {
@@ -430,17 +619,25 @@ int main(void)
     RUN_TEST(test_without_a_plan_the_cop_goes_between_the_feet);
     RUN_TEST(test_legs_do_what_the_plan_has_them_for);
     RUN_TEST(test_a_foot_that_carries_nothing_lifts_before_its_time);
+    RUN_TEST(test_a_walk_that_stops_ends_side_by_side);
+    RUN_TEST(test_the_last_swing_waits_while_the_xcom_would_fall_out_or_past_it);
     RUN_TEST(test_a_swing_ends_where_the_plan_has_it);
     RUN_TEST(test_rates_are_those_of_the_angles);
     RUN_TEST(test_the_landing_follows_an_error_of_the_xcom_until_shortly_before_it);
     RUN_TEST(test_in_need_the_foot_goes_to_the_recovery_step);
+    RUN_TEST(test_the_recovery_step_is_taken_in_need_only);
     RUN_TEST(test_a_foot_that_has_not_landed_reaches_down);
     RUN_TEST(test_a_foot_that_carries_early_has_landed);
+    RUN_TEST(test_a_foot_that_is_due_lands_even_if_the_plan_has_not_gone_on);
+    RUN_TEST(test_the_first_swing_touches_the_ground_without_landing);
     RUN_TEST(test_a_foot_on_its_toe_is_put_down_by_the_plan_not_at_once);
     RUN_TEST(test_a_change_of_role_is_no_jump);
     RUN_TEST(test_an_absurd_estimate_falls_back_and_leaves_nothing_behind);
     RUN_TEST(test_after_a_gap_it_starts_anew);
     RUN_TEST(test_before_its_start_it_has_no_intent);
+#if !defined SADDLE_EMULATED && defined FE_UPWARD
+    RUN_TEST(test_another_rounding_mode_is_refused);
+#endif
     RUN_TEST(test_each_gain_out_of_its_range_is_named);
     return UNITY_END();
 }

@@ -442,8 +442,17 @@ static void test_absurd_input_is_refused_and_gives_no_number(void)
         com.velocity_m_s.y = absurd[i];
         TEST_ASSERT_FALSE(saddle_inverse_of_com(&legs, &com, foot, &trunk, &joints).valid);
         TEST_ASSERT_EQUAL_MEMORY(&before, &trunk, sizeof trunk);
-        foot[1].pitch_rad = absurd[i];
-        TEST_ASSERT_FALSE(saddle_inverse(&legs, &trunk, foot, &joints).valid);
+        com = (saddle_com_t){{trunk.hips_m.x, absurd[i], trunk.hips_m.z}, trunk.velocity_m_s};
+        TEST_ASSERT_FALSE(saddle_inverse_of_com(&legs, &com, foot, &trunk, &joints).valid);
+        com.position_m = trunk.hips_m;
+        const size_t first = offsetof(saddle_foot_t, position_m);
+        for (size_t at = first; at < sizeof(saddle_foot_t); at += sizeof(float)) {
+            some_feet(foot, SADDLE_SOLE_MIDDLE);
+            memcpy((char *)&foot[1] + at, &absurd[i], sizeof(float));
+            TEST_ASSERT_FALSE(saddle_inverse(&legs, &trunk, foot, &joints).valid);
+            TEST_ASSERT_FALSE(saddle_inverse_of_com(&legs, &com, foot, &trunk, &joints).valid);
+            TEST_ASSERT_EQUAL_MEMORY(&before, &trunk, sizeof trunk);
+        }
     }
 }
 

@@ -135,9 +135,6 @@ static bool must_wait(const saddle_joint_walk_t *walk, const saddle_moment_t *mo
 float saddle_trailing_share(const saddle_joint_walk_t *walk, const saddle_moment_t *moment)
 {
     const saddle_plan_t *plan = moment->plan;
-    if (!walk->stands[1u - walk->leading]) {
-        return 0.0f;
-    }
     if (saddle_both_stand(plan) || must_wait(walk, moment)) {
         return 1.0f;
     }
@@ -224,12 +221,11 @@ static void by_plan(saddle_joint_walk_t *walk, saddle_moment_t *moment)
     const unsigned side = 1u - moment->stance;
     const bool due = landing_in_s(plan) <= 0.0f;
     if (walk->stands[side]) {
-        walk->stands[side] = due || saddle_trailing_share(walk, moment) > 0.0f;
+        const bool trails = walk->leading != side;
+        walk->stands[side] = due || !trails || saddle_trailing_share(walk, moment) > 0.0f;
         return;
     }
-    if (walk->swings[side]) {
-        move(walk, moment, side);
-    }
+    move(walk, moment, side);
     if (due) {
         land(walk, side, 0.0f);
         hold(walk, moment);
@@ -240,16 +236,13 @@ static void by_plan(saddle_joint_walk_t *walk, saddle_moment_t *moment)
 static void touch_down(saddle_joint_walk_t *walk, saddle_moment_t *moment, unsigned side)
 {
     const float load_n = moment->estimate->load_n[side];
-    const saddle_plan_t *plan = moment->plan;
     if (walk->stands[side]) {
         walk->swings[side] = walk->swings[side] && load_n <= walk->config.landed_n;
         return;
     }
-    if (load_n <= walk->config.landed_early_n || saddle_both_stand(plan) || walk->first_swing) {
-        return;
-    }
-    const float early_s = landing_in_s(plan);
-    if (early_s > 0.0f && early_s < walk->config.early_max_s) {
+    const float early_s = landing_in_s(moment->plan); /* by a plan a foot is in the air */
+    if (load_n > walk->config.landed_early_n && !walk->first_swing &&
+        early_s < walk->config.early_max_s) {
         land(walk, side, early_s);
         hold(walk, moment);
         walk->swings[side] = false;

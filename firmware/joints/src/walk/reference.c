@@ -95,9 +95,7 @@ static void fade(saddle_joint_walk_t *walk, const saddle_joints_t *raw, unsigned
     saddle_leg_reference_t *leg = &walk->leg[side];
     const bool changed = leg->role != intent->role[side];
     const float before_s = leg->fading_s;
-    leg->fading_s = changed || !leg->has_role
-                        ? 0.0f
-                        : saddle_smaller(leg->fading_s + dt_s, walk->config.fade_s);
+    leg->fading_s = changed ? 0.0f : saddle_smaller(leg->fading_s + dt_s, walk->config.fade_s);
     const saddle_jerk_t faded = saddle_min_jerk_both(leg->fading_s / walk->config.fade_s);
     const float slope_1_s = faded.slope / walk->config.fade_s;
     const saddle_jerk_t before = saddle_min_jerk_both(before_s / walk->config.fade_s);
@@ -111,7 +109,7 @@ static void fade(saddle_joint_walk_t *walk, const saddle_joints_t *raw, unsigned
                                      (1.0f - before.value) * leg->offset_rad[joint] - raw_rad;
         }
         const float rate_rad_s = raw->rate_rad_s[side][joint] - slope_1_s * leg->offset_rad[joint];
-        const float gained = changed || !leg->has_role
+        const float gained = changed
                                  ? 0.0f
                                  : saddle_clamp((rate_rad_s - leg->rate_rad_s[joint]) / dt_s,
                                                 -ACCELERATION_MAX_RAD_S2, ACCELERATION_MAX_RAD_S2);
