@@ -45,10 +45,12 @@ WALK_FIELDS: Mapping[str, float | int] = {
     "swing_approach": 0.3,
     "landing_late_s": 0.0,
 }
-# Knees bent enough for the steps of 1.6 m/s; a step's width that hips with torque limits bear.
+# Knees bent enough for the steps of 1.6 m/s, and braking that nearly straight legs bear; a step's
+# width that hips with torque limits bear.
 WINTER_FIELDS: Mapping[str, float | int] = {
     **WALK_FIELDS,
     "pendulum_ratio": 0.53,
+    "acceleration_m_s2": 0.35,
     "step_width_fast_m": 0.16,
 }
 
