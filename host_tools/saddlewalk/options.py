@@ -8,6 +8,8 @@ from collections.abc import Callable
 from saddlewalk.outputs import add_input
 from saddlewalk.workers import Workers
 
+SAMPLE_NAMES = ("healthy", "stroke")
+
 
 def number_in(low: float, high: float, unit: str = "") -> Callable[[str], float]:
     """An argparse type: a finite number in [low, high]."""
@@ -135,15 +137,25 @@ def workers_of(args: argparse.Namespace) -> Workers:
 
 
 def add_recordings(parser: argparse.ArgumentParser) -> None:
-    """RECORDING... and --markers, for load_walk()."""
+    """RECORDING... or --sample, and --markers, for recorded_walks()."""
+    given = parser.add_mutually_exclusive_group(required=True)
     add_input(
-        parser,
+        given,
         "recordings",
-        nargs="+",
+        nargs="*",
+        default=[],
         metavar="RECORDING",
         help="a steady walk: .c3d, .trc, or CSV with t, com_x ... rtoe_z in s and m",
     )
+    add_sample(given)
     add_markers(parser)
+
+
+def add_sample(given: "argparse._MutuallyExclusiveGroup") -> None:
+    """--sample, beside the recordings that it stands for."""
+    given.add_argument(
+        "--sample", choices=SAMPLE_NAMES, help="a recorded person from the package gaitkit"
+    )
 
 
 def add_markers(parser: argparse.ArgumentParser) -> None:

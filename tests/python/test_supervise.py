@@ -4,6 +4,7 @@ import csv
 import io
 import itertools
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -304,3 +305,22 @@ def test_margin_of_a_missing_measurement_is_empty(capsys, tmp_path):
     rows = supervise(capsys, "--in", write(tmp_path / "states.csv", states))
     assert rows[10]["margin"] == "" and rows[10]["level"] == "unknown"
     assert all(row["margin"] for k, row in enumerate(rows) if k != 10)
+
+
+def test_the_help_explains_each_column(capsys):
+    with pytest.raises(SystemExit):
+        main(["supervise", "--help"])
+    _, states, result = re.split(r"\ncolumns of .*\n", capsys.readouterr().out)
+    assert {*STATE_COLUMNS} <= {*states.split()}
+    assert {*SCORE_COLUMNS} <= {*result.split()}
+
+
+def test_the_example_is_stable_then_a_caution_then_unstable(capsys):
+    """A push to the left at 12 s, of which the emulated wearer falls."""
+    example = Path(__file__).parents[2] / "examples/states.csv"
+    assert main(["supervise", "--in", str(example)]) == 0
+    rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+    levels = [(float(row["t_s"]), row["level"]) for row in rows]
+    assert {level for t_s, level in levels if t_s < 12} <= {"unknown", "stable"}
+    first = [next(t_s for t_s, each in levels if each == name) for name in ("caution", "unstable")]
+    assert 12 < first[0] < first[1] < levels[-1][0]

@@ -53,15 +53,14 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.atomic_write import write_text
     from saddlewalk.gait.calibration import calibrate, checked
     from saddlewalk.gait.measures import measure
-    from saddlewalk.gait.motion_capture import load_walk, read_markers
     from saddlewalk.gait.person_file import header_text, toml_text
     from saddlewalk.gait.ripple import learned_ripple
+    from saddlewalk.gait.samples import recorded_walks
 
-    markers = read_markers(args.markers)
     for source in args.recordings:
         if args.recordings.count(source) > 1:
             raise UserError(f"{source} is given twice: its steps would count twice")
-    recordings = [load_walk(source, markers) for source in args.recordings]
+    recordings = recorded_walks(args.recordings, args.sample, args.markers)
     walks = [measure(recording) for recording in recordings]
     ripples = [learned_ripple(recording) for recording in recordings]
     fits = calibrate(walks, args.height, args.mass, ripples)

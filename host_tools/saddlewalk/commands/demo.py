@@ -370,7 +370,7 @@ def _what_next(folder: Path) -> str:
     return (
         f"try next: {own} view {log}    # this walk in the browser, with a slider\n"
         f"          {own} replay --sample healthy    # a recorded person, scored by the firmware\n"
-        f"          {own} calibrate WALK.c3d --out person.toml    # the gait of a person you know"
+        f"          {own} calibrate --sample healthy --out person.toml    # the gait of that person"
     )
 
 

@@ -72,12 +72,12 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.atomic_write import write_text
     from saddlewalk.gait.followed import follow, summary
     from saddlewalk.gait.measures import measure
-    from saddlewalk.gait.motion_capture import load_walk, read_markers
+    from saddlewalk.gait.samples import recorded_walks
     from saddlewalk.table import write_table
 
     _check_left_out(args)
-    markers = read_markers(args.markers)
-    walks = [measure(load_walk(source, markers)) for source in args.recordings]
+    recordings = recorded_walks(args.recordings, args.sample, args.markers)
+    walks = [measure(recording) for recording in recordings]
     if args.halves:
         walks = _halves(walks)
     configurations = _configurations(args, walks)

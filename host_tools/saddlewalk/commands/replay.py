@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from saddlewalk.commands.view import add_view_options
 from saddlewalk.config import add_body_options
 from saddlewalk.errors import UserError
-from saddlewalk.options import add_markers
+from saddlewalk.options import add_markers, add_sample
 from saddlewalk.outputs import add_input, add_output
 
 if TYPE_CHECKING:
@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from saddlewalk.gait.recording import Recording
     from saddlewalk.gait.states import State
     from saddlewalk.ticks import Signals
-
-SAMPLE_NAMES = ("healthy", "stroke")
 
 
 def add_parser(subparsers: Any) -> None:
@@ -30,9 +28,7 @@ def add_parser(subparsers: Any) -> None:
         metavar="RECORDING",
         help=".c3d, .trc, or CSV with t, com_x ... rtoe_z in s and m; - reads CSV from stdin",
     )
-    trial.add_argument(
-        "--sample", choices=SAMPLE_NAMES, help="a recorded person from the package gaitkit"
-    )
+    add_sample(trial)
     add_markers(parser)
     parser.add_argument(
         "--can",
@@ -63,11 +59,13 @@ def run(args: argparse.Namespace) -> int:
         play_realtime,
         states_at_ticks,
     )
+    from saddlewalk.gait.samples import recorded_walks
     from saddlewalk.transport.bus import open_bus, private_udp
     from saddlewalk.view.beside import page_beside
 
     clock = _clock(args)
-    recording = _load(args)
+    files = [args.recording] if args.recording else []
+    (recording,) = recorded_walks(files, args.sample, args.markers)
     gait = analyse(recording)
     for line in implausible(recording, gait):
         print(f"saddlewalk replay: {line}", file=sys.stderr)
@@ -122,13 +120,3 @@ def _finish(
         )
     stream = sys.stderr if args.out == "-" else sys.stdout
     print("\n".join(report(recording, gait, rows)), file=stream)
-
-
-def _load(args: argparse.Namespace) -> "Recording":
-    if args.sample:
-        from saddlewalk.gait.samples import load_sample
-
-        return load_sample(args.sample)
-    from saddlewalk.gait.motion_capture import load_walk, read_markers
-
-    return load_walk(args.recording, read_markers(args.markers))

@@ -9,14 +9,39 @@ from saddlewalk.options import add_markers, speed
 from saddlewalk.outputs import add_input, add_output
 from saddlewalk.table import write_table
 
+COLUMNS = """\
+columns of states, in any order; an empty cell is a missing measurement:
+  t_s                        time, rising
+  com_x_m com_y_m com_z_m    CoM: x forward, y to the left, z from the ground
+  com_vx_m_s com_vy_m_s      its velocity
+  left_x_m left_y_m right_x_m right_y_m
+                             middles of the soles
+  left_contact right_contact 1: on the ground; 0: in the air
+
+columns of the result; an empty cell is a missing result:
+  t_s                        time
+  v_comp_m_s                 mean speed of the CoM over the last completed step
+  s_pend s_jump s_sw         step scores: 1 as in a steady walk, 0 the limit
+  mos_com_m mos_xcom_m       CoM and XCoM inside the base of support; negative: outside
+  ebos_com_m ebos_xcom_m     the same in the base of support of the next heel strike
+  excess_stop_j excess_track_j
+                             energy to lose in order to stop, and to return to the plan
+  can_stop on_track          1: the ankles can absorb that; 0: they cannot
+  level                      stable, caution, unstable, unknown
+  flags                      hexadecimal: bits 0-15 saddle_fault_t, 16-23 saddle_limit_t,
+                             24-31 the saddle_reason_t that decided the level
+  recovery_margin_m          reach that a recovery step has left; negative: what is lacking
+  margin                     decides the level: larger is safer, unstable at 0 and below
+"""
+
 
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "supervise",
         help="score recorded states",
-        description="Score recorded states, as CSV. An empty cell is a missing result. "
-        "flags: bits 0-15 saddle_fault_t, 16-23 saddle_limit_t, 24-31 the saddle_reason_t that "
-        "decided the level.",
+        description="Score recorded states, as CSV.",
+        epilog=COLUMNS,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add_input(
         parser,

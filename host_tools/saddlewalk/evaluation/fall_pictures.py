@@ -41,6 +41,18 @@ matplotlib.use("Agg")
 
 COLOURS = ("black", BLUE, SKY, GREEN, ORANGE, RED, PINK, "0.5")
 DASHES = ("-", "--")
+WORDS = {  # of the margins
+    "level": "announced level",
+    "ebos_xcom": "XCoM in E-BoS",
+    "ebos_com": "CoM in E-BoS",
+    "mos_xcom": "XCoM in BoS",
+    "mos_com": "CoM in BoS",
+    "excess_stop": "energy to stop",
+    "excess_track": "energy to the plan",
+    "s_sw": "S_SW",
+    "hull_com": "CoM in the feet's hull",
+    "hof_xcom": "Hof's margin",
+}
 BEFORE_S, AFTER_S, FALLEN_S = 0.8, 2.4, 0.3  # shown before the push and after a fall
 FALL_HEIGHT = 0.75  # share of the usual height
 MARGIN_STYLES: dict[str, dict[str, Any]] = {
@@ -55,7 +67,7 @@ LEVEL_COLOURS = {name: style.get("color", style.get("facecolor")) for name, styl
 
 def draw_rocs(walkers: Mapping[str, Sequence[Score]], path: Path) -> None:
     """ROC curves: a row for each walker, a column for each window of evidence."""
-    figure = Figure(figsize=(6.5 * len(WINDOWS), 6 * len(walkers)), dpi=110, layout="constrained")
+    figure = Figure(figsize=(9 * len(WINDOWS), 6 * len(walkers)), dpi=90, layout="constrained")
     rows = figure.subplots(len(walkers), len(WINDOWS), squeeze=False)
     for row, (walker, scores) in zip(rows, walkers.items(), strict=True):
         pushed = [each for each in scores if each.pushed]
@@ -64,7 +76,8 @@ def draw_rocs(walkers: Mapping[str, Sequence[Score]], path: Path) -> None:
                 found = evidence(pushed, window, name)
                 false, true = (np.append(rates, 1.0) for rates in roc(*found))
                 style = {"color": COLOURS[index % 8], "ls": DASHES[index // 8]}
-                axes.plot(false, true, label=f"{name} {area(*found):.3f}", **style)
+                label = f"{area(*found):.3f}  {WORDS.get(name, name.replace('_', ' '))}"
+                axes.plot(false, true, label=label, **style)
             axes.plot([0, 1], [0, 1], color="0.8", lw=0.8)
             axes.set(
                 title=f"{walker}: {longest_s:g} s from the push, to 0.24 s before the fall",
@@ -72,8 +85,23 @@ def draw_rocs(walkers: Mapping[str, Sequence[Score]], path: Path) -> None:
                 ylabel="falls announced",
                 aspect="equal",
             )
-            axes.legend(loc="lower right", fontsize=8, title="least margin, area")
+            _legend_by_area(axes)
     figure.savefig(path)
+
+
+def _legend_by_area(axes: Axes) -> None:
+    """The best first, beside the curves: they fill the whole panel."""
+    handles, labels = axes.get_legend_handles_labels()
+    best_first = sorted(zip(labels, handles, strict=True), key=lambda each: each[0], reverse=True)
+    axes.legend(
+        [handle for _, handle in best_first],
+        [label for label, _ in best_first],
+        loc="center left",
+        bbox_to_anchor=(1.0, 0.5),
+        frameon=False,
+        title="area under the curve",
+        fontsize=11,
+    )
 
 
 def worst_misses(walks: Sequence[Scored]) -> list[Scored]:
@@ -111,7 +139,7 @@ def draw_walk(scored: Scored, path: Path) -> None:
     height.set(ylabel="height of\nthe CoM (m)")
     for name, style in MARGIN_STYLES.items():
         if name in announced.margins:
-            line = {"label": name, "marker": "."} | style
+            line = {"label": WORDS.get(name, name.replace("_", " ")), "marker": "."} | style
             margins.plot(t_s[shown], announced.margins[name][shown], **line)
     margins.axhline(0, color="0.4", lw=0.8)
     margins.set(ylabel="margins (m)")

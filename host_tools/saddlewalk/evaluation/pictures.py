@@ -37,8 +37,9 @@ def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
     SOON_S.
     """
     windows = WINDOWS[1:]
-    figure = Figure(figsize=(13, 12), dpi=110, layout="constrained")
-    for row, kind in zip(figure.subplots(len(KINDS), len(windows)), KINDS, strict=True):
+    figure = Figure(figsize=(13, 13.5), dpi=110, layout="constrained")
+    panels = figure.subplots(len(KINDS), len(windows))
+    for row, kind in zip(panels, KINDS, strict=True):
         of_kind = [walk for walk in walks if walk.trial.kind == kind and walk.trial.impulse_n_s > 0]
         for axes, window in zip(row, windows, strict=True):
             for index, name in enumerate(MARGINS):
@@ -52,7 +53,8 @@ def draw_rocs(walks: Sequence[Walk], path: Path) -> None:
                 ylabel="falls predicted",
                 aspect="equal",
             )
-    row[-1].legend(loc="lower right", fontsize=8)
+    handles, labels = panels[0][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=12)
     figure.savefig(path)
 
 

@@ -6,6 +6,7 @@ transverse plane but lies about 0.1 m below it. Only gaitkit's data are read; no
 """
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
@@ -14,9 +15,20 @@ from typing import Any
 import numpy as np
 
 from saddlewalk.errors import UserError
+from saddlewalk.gait.motion_capture import load_walk, read_markers
 from saddlewalk.gait.recording import Recording
 
 INSTALL = "make samples"
+
+
+def recorded_walks(
+    files: Sequence[str], sample: str | None, markers: str | None
+) -> list[Recording]:
+    """What RECORDING... or --sample names; markers: the file of --markers."""
+    if sample:
+        return [load_sample(sample)]
+    mapping = read_markers(markers)
+    return [load_walk(file, mapping) for file in files]
 
 
 @dataclass(frozen=True)
