@@ -66,10 +66,10 @@ fuzz: build-fuzz/build.ninja ## random inputs under sanitizers; make fuzz HOURS=
 	@$(BIN)/ninja -C build-fuzz --quiet fuzz_targets
 	@$(BIN)/python tests/fuzz/run.py build-fuzz $(if $(HOURS),$$(($(HOURS) * 3600)),$(SECONDS))
 
-mutants: build .venv/installed-test ## whether the unit tests notice changed code; SAMPLE=0: every change
+mutants: build .venv/installed-test ## whether the tests notice changed code; SAMPLE=0: every change
 	@$(BIN)/ninja -C build --quiet tests
-	@$(BIN)/python tests/mutants/mutate.py wire $(or $(SAMPLE),60) $(SEED) 90
-	@$(BIN)/python tests/mutants/mutate.py core $(or $(SAMPLE),150) $(SEED) 75
+	@$(BIN)/python tests/mutants/mutate.py wire $(or $(SAMPLE),60) $(SEED) 95
+	@$(BIN)/python tests/mutants/mutate.py core $(or $(SAMPLE),150) $(SEED) 95
 
 soak: build .venv/installed-test ## hours of walks against one host process; make soak HOURS=24
 	@$(BIN)/python tests/soak/soak.py $(or $(HOURS),0.5)

@@ -497,6 +497,32 @@ static void test_a_code_authenticates_one_command_once(void)
     TEST_ASSERT_EQUAL_UINT32(0, receiver.bad_counter);
 }
 
+/** echo efcdab8934120001a1b2c3d4e5f60718 | xxd -r -p | openssl mac -cipher AES-128-CBC -macopt
+ *  hexkey:000102030405060708090a0b0c0d0e0f CMAC: 7C65BF73..., a number that the frame has with its
+ *  lowest byte first. */
+static void test_code_is_the_cmac_of_session_freshness_and_command(void)
+{
+    static const uint8_t secret[SADDLE_CMAC_LENGTH] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                       8, 9, 10, 11, 12, 13, 14, 15};
+    static const uint8_t expected[] = {0x34, 0x12, 0x73, 0xBF, 0x65, 0x7C};
+    const saddle_frame_t command = {.id = 0x100,
+                                    .data = {0xA1, 0xB2, 0xC3, 0xD4, 0xE5, 0xF6, 0x07, 0x18}};
+    saddle_cmac_key_t prepared;
+    saddle_frame_t code;
+    saddle_cmac_prepare(&prepared, secret);
+    saddle_wire_encode_code(&prepared, 0x89ABCDEFu, 0x1234u, &command, &code);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, &code.data[2], sizeof expected);
+}
+
+static void test_a_new_session_counts_from_one(void)
+{
+    saddle_wire_require_auth(&receiver, KEY);
+    saddle_wire_open_session(&receiver, 7);
+    TEST_ASSERT_TRUE(accepts(7, 30));
+    saddle_wire_open_session(&receiver, 8);
+    TEST_ASSERT_TRUE(accepts(8, 1));
+}
+
 static bool accepts_time(uint32_t session, uint32_t time_us, uint8_t flipped)
 {
     saddle_cmac_key_t prepared;
@@ -579,6 +605,8 @@ int main(void)
     RUN_TEST(test_process_bytes);
     RUN_TEST(test_before_a_session_no_code_is_valid);
     RUN_TEST(test_a_code_authenticates_one_command_once);
+    RUN_TEST(test_code_is_the_cmac_of_session_freshness_and_command);
+    RUN_TEST(test_a_new_session_counts_from_one);
     RUN_TEST(test_a_time_is_authenticated_by_its_own_code_and_rises_in_a_session);
     RUN_TEST(test_when_a_session_is_over);
     return UNITY_END();
