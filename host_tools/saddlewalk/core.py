@@ -44,6 +44,7 @@ class Measurement:
     right_cop_m: tuple[float, float] | None = None
     left_contact: bool = False
     right_contact: bool = False
+    age_us: int = 0
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ def _fill(target: Any, measurement: Measurement) -> None:
     com = target.com
     com.age_us = AGE_NEVER_US
     if measurement.com_height_m is not None and measurement.com_velocity_m_s is not None:
-        com.age_us = 0
+        com.age_us = measurement.age_us
         com.height_m = measurement.com_height_m
         com.velocity_m_s.x, com.velocity_m_s.y = measurement.com_velocity_m_s
     feet = (
@@ -123,7 +124,7 @@ def _fill(target: Any, measurement: Measurement) -> None:
         (measurement.right_cop_m, measurement.right_contact),
     )
     for foot, (cop_m, contact) in zip(target.foot, feet, strict=True):
-        foot.age_us = 0 if cop_m is not None else AGE_NEVER_US
+        foot.age_us = measurement.age_us if cop_m is not None else AGE_NEVER_US
         foot.contact = contact
         if cop_m is not None:
             foot.cop_m.x, foot.cop_m.y = cop_m

@@ -418,6 +418,34 @@ def test_measurement_noise_has_its_stated_deviation():
     assert heights.mean() == pytest.approx(wearer.height_m, abs=0.002 * 4 / math.sqrt(2000))
 
 
+@pytest.mark.parametrize("delay_s", [0.0, 0.04, 0.08, 0.12])
+def test_measurements_are_late_by_the_delay(delay_s):
+    wearer, seen = Wearer(noise=STEADY), []
+
+    def after_step(tick: Tick, steps: int) -> None:
+        seen.append(wearer.exact())
+
+    schedule = schedule_of([(0.0, 1.0)], 0.0)
+    ticks = closed_loop.walk(default_config(), wearer, schedule, after_step, delay_s)
+    for tick in itertools.islice(ticks, 50):
+        before = round((tick.time_s - delay_s) / STEP_S)
+        assert before < 1 or tick.measured == seen[before - 1]
+
+
+@pytest.mark.parametrize("delay_s", [0.04, 0.08, 0.12])
+def test_a_walk_bears_late_measurements_by_their_age_or_a_known_latency(delay_s):
+    """Compared with the plan as it is now, measurements 80 ms old make every wearer fall."""
+    levels = []
+    for fields in ({}, {"sensor_latency_s": delay_s}):
+        wearer = Wearer(seed=3)
+        schedule = schedule_of([(0.0, 1.2), (15.0, 0.0)], 0.17)
+        ticks = closed_loop.walk(config_with(**fields), wearer, schedule, delay_s=delay_s)
+        levels.append([tick.output.verdict.level for tick in itertools.islice(ticks, 300)])
+        assert not wearer.fallen
+    assert levels[0] == levels[1]
+    assert set(levels[0][1:]) == {STABLE}
+
+
 def test_a_lost_plan_ends_the_walk_and_the_wearer_puts_both_feet_down():
     wearer = Wearer()
     ticks = closed_loop.walk(default_config(), wearer, schedule_of([(0.0, 0.5)], 0.0))

@@ -327,12 +327,12 @@ def test_walks_without_exact_inputs_are_shown_with_noise_alone():
 
 @needs_mujoco
 def test_a_pushed_walk_of_a_body_is_evaluated_at_its_speeds():
-    from saddlewalk.evaluation.walks import Trial, draw, run
+    from saddlewalk.evaluation.walks import Setting, Trial, draw, run
 
     speeds = [draw(1, k, "recovery", 63.3, (0.6, 1.2)).speed_m_s for k in range(40)]
     assert 0.6 <= min(speeds) < 0.75 and 1.05 < max(speeds) <= 1.2
     plant = PlantChoice("winter")
     trial = Trial("planned", 0, -1, 0.8, 90.0, 3.0, 60.0, 5)
-    course = run(trial, configuration(plant.fields), plant=plant)
+    course = run(trial, configuration(plant.fields), setting=Setting(plant))
     assert 3.0 < course.fell_at_s < 5.0
     assert course.ticks["time_s"][-1] < course.fell_at_s

@@ -30,6 +30,7 @@ static saddle_config_t random_config(uint32_t *state)
         config.command_max_age_s = random_in(state, 0.1f, 2.0f);
         config.com_max_age_s = random_in(state, 0.1f, 2.0f);
         config.foot_max_age_s = random_in(state, 0.1f, 2.0f);
+        config.sensor_latency_s = random_in(state, 0.0f, 0.2f);
     } while (saddle_config_check(&config) != NULL);
     return config;
 }
@@ -101,6 +102,8 @@ static void test_times_in_microseconds(void)
         TEST_ASSERT_UINT32_WITHIN(1, (uint32_t)(1e6 * (double)config.tick_max_s),
                                   body->tick_max_us);
         TEST_ASSERT_UINT32_WITHIN(1, (uint32_t)(1e6 * (double)config.shift_time_s), body->shift_us);
+        TEST_ASSERT_UINT32_WITHIN(1, (uint32_t)(1e6 * (double)config.sensor_latency_s),
+                                  body->latency_us);
     }
 }
 

@@ -63,7 +63,7 @@ static uint32_t update_with(uint32_t faults)
     scores.bos.defined = true;
     scores.can_stop = true;
     scores.paper_stable = true;
-    const saddle_sensed_t sensed = {&measured, faults, DT_S};
+    const saddle_sensed_t sensed = {&measured, &measured, faults, DT_S};
     saddle_output_t output = {.scores = scores, .verdict = verdict};
     const uint32_t said =
         saddle_supervisor_update(&supervisor, model_of(&config), &sensed, &intent, &output);

@@ -1151,6 +1151,53 @@ static void test_plan_that_was_never_given_measurements_walks_on(void)
     }
 }
 
+/* Measurements of so many ticks ago, in a walk that departs from the plan. */
+static void walk_late(uint32_t age_us, saddle_output_t *last)
+{
+    saddle_measurement_t past[2] = {good_measurement(), good_measurement()};
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
+    input = walking_input(0);
+    join();
+    for (uint64_t t = 0; t < 4000000u; t += 80000u) {
+        input.measurement = past[0];
+        input.measurement.com.age_us = age_us;
+        input.measurement.foot[SADDLE_LEFT].age_us = age_us;
+        input.measurement.foot[SADDLE_RIGHT].age_us = age_us;
+        tick_at(t);
+        past[0] = past[1];
+        measure_plan(&output.plan, &past[1]);
+        past[1].com.velocity_m_s.y += 0.1f;
+    }
+    *last = output;
+}
+
+/* [E46] The same bits, whether a latency is in the ages or in the configuration. */
+static void test_known_latency_counts_as_age(void)
+{
+    saddle_output_t by_age, by_latency, too_young;
+    walk_late(160000u, &by_age);
+    config.sensor_latency_s = 0.1f;
+    walk_late(60000u, &by_latency);
+    walk_late(59999u, &too_young);
+    TEST_ASSERT_TRUE(same_output(&by_age, &by_latency));
+    TEST_ASSERT_FALSE(same_output(&by_age, &too_young));
+}
+
+static void test_known_latency_counts_for_the_age_limits(void)
+{
+    config.sensor_latency_s = 0.1f;
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
+    input.measurement.com.age_us = 140000u;
+    tick_at(0);
+    TEST_ASSERT_EQUAL_HEX32(0, output.faults);
+    input.measurement.com.age_us = 140001u;
+    tick_at(80000u);
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_COM_STALE, output.faults);
+    input.measurement.com.age_us = SADDLE_AGE_NEVER_US; /* no sum is older */
+    tick_at(160000u);
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_COM_STALE, output.faults);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -1193,5 +1240,7 @@ int main(void)
     RUN_TEST(test_wearer_is_judged_by_the_plan_that_was_not_moved);
     RUN_TEST(test_plan_at_takes_the_recovery_step);
     RUN_TEST(test_plan_that_was_never_given_measurements_walks_on);
+    RUN_TEST(test_known_latency_counts_as_age);
+    RUN_TEST(test_known_latency_counts_for_the_age_limits);
     return UNITY_END();
 }

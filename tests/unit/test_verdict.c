@@ -141,6 +141,7 @@ static void plan(const walk_t *walk, double x)
     intent = (saddle_intent_t){
         .leads = true,
         .walking = true,
+        .stance_then = walk->stance,
         .step = {.stance = walk->stance,
                  .speed_m_s = (float)walk->speed,
                  .half_behind_m = (float)walk->half,
@@ -184,7 +185,7 @@ static uint32_t update(uint32_t faults)
     verdict.on_track = true;
     verdict.recovery.found = true;
     verdict.recovery.stops = true;
-    const saddle_sensed_t sensed = {&measured, faults, DT_S};
+    const saddle_sensed_t sensed = {&measured, &measured, faults, DT_S};
     saddle_output_t output = {.scores = scores, .verdict = verdict};
     const uint32_t said =
         saddle_supervisor_update(&supervisor, model_of(&config), &sensed, &intent, &output);

@@ -1,4 +1,5 @@
 #include "balance/comparison.h"
+#include "balance/present.h"
 #include "balance/scores.h"
 #include "balance/supervisor.h"
 #include "math/bytes.h"
@@ -15,6 +16,9 @@
 #include "sense/safe_state.h"
 
 #include <saddlewalk/saddlewalk.h>
+
+/* Nothing of such a measurement is brought forward. */
+#define UNMEASURED (SADDLE_FAULTS_COM | SADDLE_FAULTS_LEFT | SADDLE_FAULTS_RIGHT)
 
 /* Marks a context that saddle_init() has filled. */
 #define INITIALISED 0x5ADD1E00u
@@ -101,6 +105,23 @@ static uint32_t take_command(saddle_context_t *context, const saddle_input_t *in
     return faults;
 }
 
+/* By what its sensors are late a measurement is older than its age says. */
+static const saddle_measurement_t *aged(const saddle_model_t *model,
+                                        const saddle_measurement_t *measured,
+                                        saddle_measurement_t *older)
+{
+    const uint32_t latency_us = model->body.latency_us;
+    if (latency_us == 0u) {
+        return measured;
+    }
+    saddle_copy(older, measured, sizeof *older);
+    older->com.age_us = sum_us(measured->com.age_us, latency_us);
+    for (int side = 0; side < 2; side++) {
+        older->foot[side].age_us = sum_us(measured->foot[side].age_us, latency_us);
+    }
+    return older;
+}
+
 /* Where the wearer is to be. */
 static void read_intent(const saddle_planner_t *planner, const saddle_model_t *model,
                         const saddle_plan_t *plan, saddle_intent_t *intent)
@@ -111,6 +132,7 @@ static void read_intent(const saddle_planner_t *planner, const saddle_model_t *m
     intent->leads = plan->mode != (uint8_t)SADDLE_MODE_STANDING || plan->step_count > 0u;
     intent->walking = plan->speed_m_s > 0.0f;
     intent->step.speed_m_s = plan->speed_m_s;
+    intent->stance_then = stance;
     if (!intent->walking) {
         intent->com.com_m.x = plan->com_m.x - (stance_m->x + 0.5f * (other_m->x - stance_m->x));
         intent->com.com_m.y = plan->com_m.y - (stance_m->y + 0.5f * (other_m->y - stance_m->y));
@@ -150,18 +172,26 @@ static SADDLE_NOINLINE void plan_walk(saddle_context_t *context, const saddle_se
     output->limits |= stop ? (uint32_t)SADDLE_LIMIT_SAFE_STOP : 0u;
     output->limits |=
         saddle_planner_update(&context->planner, &context->model, stop ? &stand : &context->command,
-                              feet_known ? sensed->measurement : NULL, dt_us);
+                              feet_known ? sensed->sampled : NULL, dt_us);
     output->limits |= saddle_plan_write(&context->planner, &context->model, &output->plan);
+    saddle_remember_plan(&context->past, &output->plan, dt_us);
 }
 
-/* The measured posture against the plan. */
+/* The measured posture, as of now, against the plan. [E46] */
 static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_sensed_t *sensed,
                                       saddle_output_t *output)
 {
     saddle_intent_t intent;
+    saddle_measurement_t present;
+    saddle_sensed_t now = *sensed;
     read_intent(&context->planner, &context->model, &output->plan, &intent);
+    if (sensed->sampled->com.age_us > 0u && intent.leads && (sensed->faults & UNMEASURED) == 0u) {
+        intent.stance_then =
+            saddle_bring_forward(&context->past, &context->model, sensed->sampled, &present);
+        now.measurement = &present;
+    }
     output->faults |=
-        saddle_supervisor_update(&context->supervisor, &context->model, sensed, &intent, output);
+        saddle_supervisor_update(&context->supervisor, &context->model, &now, &intent, output);
     output->walk = context->supervisor.learning.walk;
 }
 
@@ -198,9 +228,11 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     output->status = SADDLE_OK;
     output->limits = 0;
     const uint32_t dt_us = elapsed_us(context, input->time_us, &output->limits);
-    saddle_sensed_t sensed = {&input->measurement, 0, (float)dt_us * 1.0e-6f};
+    saddle_measurement_t older;
+    const saddle_measurement_t *sampled = aged(&context->model, &input->measurement, &older);
+    saddle_sensed_t sensed = {sampled, sampled, 0, (float)dt_us * 1.0e-6f};
     sensed.faults =
-        saddle_measurement_check(&context->plausibility, &context->model, sensed.measurement,
+        saddle_measurement_check(&context->plausibility, &context->model, sampled,
                                  saddle_planner_speed_m_s(&context->planner), sensed.dt_s);
     output->faults = take_command(context, input);
     const bool stop = saddle_safe_state_update(&context->safe_state, &context->model,
@@ -224,6 +256,7 @@ saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *c
         return SADDLE_ERROR_COMMAND;
     }
     context->command = *command;
+    saddle_clear(&context->past, sizeof context->past);
     (void)saddle_planner_join(&context->planner, &context->model, command);
     return SADDLE_OK;
 }

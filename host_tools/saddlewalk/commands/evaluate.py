@@ -15,6 +15,7 @@ from saddlewalk.json_text import json_text
 from saddlewalk.options import (
     add_campaign_options,
     add_plant_options,
+    number_in,
     speed_range,
     whole_number_in,
     workers_of,
@@ -77,6 +78,14 @@ def add_parser(subparsers: Any) -> None:
         metavar="LOW:HIGH",
         help="of the emulated walks, m/s (default 0.5:1.6)",
     )
+    parser.add_argument(
+        "--delay",
+        type=number_in(0.0, 0.2, "s"),
+        default=0.0,
+        metavar="S",
+        help="of the emulated wearer's measurements; what sensor_latency_s does not say of it "
+        "is their age (default 0)",
+    )
     add_campaign_options(parser)
     add_plant_options(parser)
     add_input(
@@ -127,7 +136,9 @@ def run(args: argparse.Namespace) -> int:
     trials = score_folder(args.gait, config) if args.gait else []
     parts = []
     if args.walks or not args.falls:
-        parts.append(_emulate(console, args, Setting(plant, args.speeds), config, trials))
+        parts.append(
+            _emulate(console, args, Setting(plant, args.speeds, args.delay), config, trials)
+        )
     if args.falls:
         parts.append(_score_falls(args))
     results = {name: figures for part in parts for name, figures in part.figures.items()}

@@ -1,6 +1,7 @@
 """The core and an emulated wearer in one process, without buses, tick by tick."""
 
 import functools
+from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -21,7 +22,7 @@ class Tick:
 
     time_s: float
     measured: emulator.Measurement
-    exact: emulator.Measurement  # the same without the sensors' noise
+    exact: emulator.Measurement  # without delay and the sensors' noise
     output: Any  # saddle_output_t
     plan: Plan
 
@@ -30,18 +31,27 @@ AfterStep = Callable[[Tick, int], None]
 
 
 def walk(
-    config: Any, wearer: Wearer, schedule: Schedule, after_step: AfterStep | None = None
+    config: Any,
+    wearer: Wearer,
+    schedule: Schedule,
+    after_step: AfterStep | None = None,
+    delay_s: float = 0.0,
 ) -> Iterator[Tick]:
     """Endless; the wearer moves on by a tick when the next one is asked for.
 
     config: saddle_config_t; after_step(tick, steps since it): called after every step of physics.
+    delay_s: from sampling to the tick; what of it sensor_latency_s does not say is the
+    measurements' age.
     """
     firmware, index = core.Core(config), 0
+    delay_steps = round(delay_s / STEP_S)
+    age_s = max(delay_s - config.sensor_latency_s, 0.0)
+    under_way = deque([wearer.measure()], maxlen=delay_steps // STEPS_A_TICK + 1)
     while True:
-        exact, measured = wearer.exact(), wearer.measure()
+        exact, measured = wearer.exact(), under_way[0]
         time_s = index * TICK_S
         time_us = round(time_s * 1e6)
-        output = firmware.tick(time_us, schedule(time_s), measurement_of(measured))
+        output = firmware.tick(time_us, schedule(time_s), measurement_of(measured, age_s))
         tick = Tick(time_s, measured, exact, output, plan_of(output, firmware))
         wearer.follow(tick.plan, functools.partial(_plan_at, firmware, time_us))
         yield tick
@@ -49,10 +59,12 @@ def walk(
             wearer.step()
             if after_step:
                 after_step(tick, step)
+            if (step + delay_steps) % STEPS_A_TICK == 0:
+                under_way.append(wearer.measure())
         index += 1
 
 
-def measurement_of(measured: emulator.Measurement) -> core.Measurement:
+def measurement_of(measured: emulator.Measurement, age_s: float = 0.0) -> core.Measurement:
     velocity, (left, right) = measured.velocity_m_s, measured.feet_m
     return core.Measurement(
         com_height_m=measured.height_m,
@@ -61,6 +73,7 @@ def measurement_of(measured: emulator.Measurement) -> core.Measurement:
         right_cop_m=(right.real, right.imag),
         left_contact=measured.contact[LEFT],
         right_contact=measured.contact[RIGHT],
+        age_us=round(age_s * 1e6),
     )
 
 

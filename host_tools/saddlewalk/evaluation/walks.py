@@ -97,6 +97,7 @@ class Setting:
 
     plant: PlantChoice = POINT_MASS
     speeds_m_s: tuple[float, float] = SPEEDS_M_S
+    delay_s: float = 0.0  # of every measurement
 
 
 POINT_MASS_WALKS = Setting()
@@ -181,18 +182,18 @@ def _work(seed: int, chain: list[int], kind: str, image: bytes, setting: Setting
     walks = []
     for trial, course in _walk_chain(seed, chain, kind, config, setting):
         # A body's physics takes seconds for a walk: it walks once.
-        again = None if setting.plant.is_mujoco else run(trial, config, EXACT_SENSORS)
+        again = None if setting.plant.is_mujoco else run(trial, config, EXACT_SENSORS, setting)
         walks.append(evaluated_walk(trial, course, again))
     return walks
 
 
 def run(
-    trial: Trial, config: Any, noise: Noise | None = None, plant: PlantChoice = POINT_MASS
+    trial: Trial, config: Any, noise: Noise | None = None, setting: Setting = POINT_MASS_WALKS
 ) -> Course:
     """noise: the wearer's own by default."""
     pushed = trial.impulse_n_s > 0
     push = Push(trial.impulse_n_s, trial.push_time_s, trial.direction_deg)
-    wearer = plant.wearer(
+    wearer = setting.plant.wearer(
         config,
         noise,
         pushes=(push,) if pushed else (),
@@ -204,7 +205,7 @@ def run(
     schedule = schedule_of(speeds, HEEL_STRIKE_RAD)
     end_s = trial.push_time_s + OBSERVED_S if pushed else CALM_S
     rows, witness = [], TickRecorder(config)
-    for tick in closed_loop.walk(config, wearer, schedule):
+    for tick in closed_loop.walk(config, wearer, schedule, delay_s=setting.delay_s):
         if tick.time_s >= end_s or wearer.fallen:
             break
         rows.append(_row(tick, wearer))
@@ -339,7 +340,7 @@ def _walk_chain(
         trial = draw(seed, index, kind, config.body_mass_kg, setting.speeds_m_s)
         if trial.cell >= 0:
             trial = replace(trial, impulse_n_s=stair_n_s)
-        course = run(trial, config, plant=setting.plant)
+        course = run(trial, config, setting=setting)
         yield trial, course
         fell = math.isfinite(course.fell_at_s)
         factor = FINE_STAIR if fell_before not in (None, fell) else factor

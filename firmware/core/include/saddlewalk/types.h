@@ -93,6 +93,8 @@ typedef struct {
     float resume_time_s;        /**< inputs that were lost must be good for so long */
     float com_max_age_s;        /**< older measurements of the CoM are not used */
     float foot_max_age_s;       /**< nor of a foot's CoP and contact */
+    float sensor_latency_s;     /**< that ages do not contain: of sensors and filters. Every
+                                     measurement is older by it, also for the two above, [E46] */
     float flight_max_s;         /**< both feet in the air for longer is no walking */
     float crossing_max_m;       /**< the left CoP lies right of the right one by no more */
     float step_time_max_s;      /**< without a heel strike for longer nobody walks */

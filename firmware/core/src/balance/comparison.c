@@ -110,13 +110,13 @@ static void nominal_step(const saddle_model_t *model, const saddle_step_tracker_
     step->landing_m.y = saddle_outward(foot) * last_width_m;
 }
 
-/* The wearer is on the planned step: on its stance foot, if with the other one too. */
+/* The wearer was on the planned step: on its stance foot, if with the other one too. */
 static bool matches_planned_step(const saddle_wearer_t *wearer, const saddle_intent_t *intent)
 {
     const saddle_measurement_t *measurement = wearer->measurement;
     const bool both =
         measurement->foot[SADDLE_LEFT].contact && measurement->foot[SADDLE_RIGHT].contact;
-    return intent->walking && (both || wearer->steps->stance == (uint8_t)intent->step.stance);
+    return intent->walking && (both || wearer->steps->stance == (uint8_t)intent->stance_then);
 }
 
 /* What the deviation now will have become when the foot lands: in the BoS expected there. */
@@ -210,11 +210,11 @@ bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
         compared.step = &intent->step;
         compared.place = &intent->place;
         compare_step(model, wearer, &compared, verdict);
-        const bool on_stance = steps->stance == (uint8_t)intent->step.stance;
+        const bool on_stance = steps->stance == (uint8_t)intent->stance_then;
         if (on_stance && intent->may_place) {
             place_landing(model, wearer, intent, &compared, placement);
         }
-        return on_stance;
+        return on_stance && intent->stance_then == intent->step.stance;
     }
     const bool walks = intent->leads ? intent->walking : steps->v_comp_known;
     const float speed_m_s = intent->leads ? intent->step.speed_m_s : steps->v_comp_m_s;

@@ -146,7 +146,7 @@ uint32_t saddle_supervisor_update(saddle_supervisor_t *supervisor, const saddle_
     saddle_scores_t *scores = &output->scores;
     saddle_verdict_t *verdict = &output->verdict;
     saddle_step_tracker_t *steps = &supervisor->steps;
-    saddle_track_steps(steps, model, sensed->measurement, sensed->faults, sensed->dt_s);
+    saddle_track_steps(steps, model, sensed->sampled, sensed->faults, sensed->dt_s);
     const uint32_t known = known_of(supervisor, intent, sensed->faults);
     saddle_posture_t posture = {.known = known};
     read_posture(steps, sensed->measurement, intent, &posture);

@@ -15,9 +15,10 @@ void saddle_supervisor_gap(saddle_supervisor_t *supervisor, float gap_s);
 
 /** A measurement after saddle_measurement_check(). */
 typedef struct {
-    const saddle_measurement_t *measurement;
-    uint32_t faults; /**< saddle_fault_t bits */
-    float dt_s;      /**< since the one before */
+    const saddle_measurement_t *measurement; /**< brought forward to now, [E46] */
+    const saddle_measurement_t *sampled;     /**< as it was made */
+    uint32_t faults;                         /**< saddle_fault_t bits */
+    float dt_s;                              /**< since the one before */
 } saddle_sensed_t;
 
 /** Follow the steps, score the posture in the frame of the CoM and give the verdict: writes scores and

@@ -138,6 +138,7 @@ static void derive_times(const saddle_config_t *config, saddle_body_t *body)
     body->command_max_age_us = us_of_s(config->command_max_age_s);
     body->com_max_age_us = us_of_s(config->com_max_age_s);
     body->foot_max_age_us = us_of_s(config->foot_max_age_s);
+    body->latency_us = (uint32_t)us_of_s(config->sensor_latency_s);
     body->tick_max_us = (uint32_t)us_of_s(config->tick_max_s);
     body->shift_us = (uint32_t)us_of_s(config->shift_time_s);
 }

@@ -50,6 +50,7 @@ typedef struct {
     saddle_shape_t shape;
     saddle_swing_profile_t swing;
     float command_max_age_us, com_max_age_us, foot_max_age_us; /**< to compare ages with */
+    uint32_t latency_us;                                       /**< sensor_latency_s */
     uint32_t tick_max_us;
     uint32_t shift_us; /**< of a shift of weight */
 } saddle_body_t;
@@ -157,6 +158,25 @@ typedef struct {
     saddle_cycle_t cycle;
 } saddle_planner_t;
 
+/* ---- balance: of the plan ------------------------------------------------------------------- */
+
+/** What is remembered of a plan, from its stance CoP: feet, and the reference's CoM and XCoM. */
+typedef struct {
+    uint32_t origin_x_nm;   /**< modulo 2^32: of plans so near the difference is exact */
+    uint32_t until_next_us; /**< from this plan to the next one that is remembered */
+    uint8_t support;        /**< saddle_side_t */
+    bool carries[2];        /**< the reference loads the foot */
+    saddle_vec2_t foot_m[2], com_m, xcom_m;
+} saddle_past_plan_t;
+
+#define SADDLE_PAST_PLANS 4u
+
+/** The plan of this tick and of some before it: 0.2 s at least. */
+typedef struct {
+    saddle_past_plan_t plans[SADDLE_PAST_PLANS]; /**< a ring */
+    uint8_t newest, count;
+} saddle_past_t;
+
 /* ---- senses --------------------------------------------------------------------------------- */
 
 /** A number that keeps its bits: for how long, and how far the CoM moved meanwhile. */
@@ -246,6 +266,7 @@ typedef struct {
     uint32_t initialised;
     saddle_model_t model;
     saddle_planner_t planner;
+    saddle_past_t past;
     saddle_plausibility_t plausibility;
     saddle_supervisor_t supervisor;
     saddle_safe_state_t safe_state;
