@@ -801,6 +801,129 @@ static void test_a_damaged_context_gives_no_such_plan(void)
     ASSERT_SAME_FLOAT(0.0f, plan.last_step_m.x);
 }
 
+/* A person who differs in every field of the shape, and in others, which are not taken over. */
+static saddle_config_t another_shape(void)
+{
+    saddle_config_t shape = config;
+    shape.lateral_factor = 1.3f;
+    shape.lateral_offset_m = -0.02f;
+    shape.lateral_delay_rad = 0.3f;
+    shape.vertical_offset_m = 0.01f;
+    shape.vertical_delay_rad = -0.25f;
+    shape.strike_share = 0.4f;
+    shape.swing_begin = -0.32f;
+    shape.swing_end = 1.04f;
+    shape.swing_skew = 1.47f;
+    return shape;
+}
+
+static void walk_steadily(saddle_ankle_t ankle)
+{
+    config.ankle = ankle;
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
+    input.measurement = saddle_no_measurement();
+    join();
+    tick_at(0);
+}
+
+static void same_place(saddle_vec3_t expected, saddle_vec3_t actual)
+{
+    const double tolerance = 3e-7; /* a rounding or two of a metre */
+    TEST_ASSERT_DOUBLE_WITHIN(tolerance, (double)expected.x, (double)actual.x);
+    TEST_ASSERT_DOUBLE_WITHIN(tolerance, (double)expected.y, (double)actual.y);
+    TEST_ASSERT_DOUBLE_WITHIN(tolerance, (double)expected.z, (double)actual.z);
+}
+
+static void no_position_jumps(const saddle_plan_t *before, uint64_t time_us)
+{
+    saddle_plan_t after;
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_plan_at(&context, time_us, &after));
+    same_place(before->com_m, after.com_m);
+    same_place(before->foot_m[SADDLE_LEFT], after.foot_m[SADDLE_LEFT]);
+    same_place(before->foot_m[SADDLE_RIGHT], after.foot_m[SADDLE_RIGHT]);
+}
+
+/* Tried at every 10 ms of three steps. */
+static void test_a_shape_is_taken_over_in_the_first_quarter_of_a_step_without_a_jump(void)
+{
+    for (int ankle = 0; ankle < SADDLE_ANKLE_COUNT; ankle++) {
+        const saddle_config_t shape = another_shape();
+        uint32_t taken = 0;
+        for (uint64_t start_us = 0; start_us < 1500000u; start_us += 10000u) {
+            walk_steadily((saddle_ankle_t)ankle);
+            for (uint64_t time_us = 0; time_us <= start_us; time_us += 10000u) {
+                tick_at(time_us);
+            }
+            const saddle_context_t untouched = context;
+            const saddle_plan_t before = output.plan;
+            const bool first_quarter =
+                before.phase % 2u == 1u && -2.0f * before.com_m.x >= 0.5f * before.step_length_m;
+            const saddle_status_t status = saddle_adapt(&context, &shape);
+            TEST_ASSERT_EQUAL_INT(first_quarter ? SADDLE_OK : SADDLE_ERROR_TIME, status);
+            if (status != SADDLE_OK) {
+                TEST_ASSERT_EQUAL_MEMORY(&untouched, &context, sizeof context);
+                continue;
+            }
+            taken++;
+            no_position_jumps(&before, start_us);
+        }
+        TEST_ASSERT_GREATER_THAN_UINT32(10, taken);
+    }
+}
+
+static void test_a_walk_goes_on_in_the_shape_that_it_took_over(void)
+{
+    walk_steadily(SADDLE_ANKLE_CYCLOID);
+    saddle_config_t shape = another_shape();
+    shape.half_step_intercept_m = 0.2f; /* not of the shape */
+    uint64_t time_us = 0;
+    while (saddle_adapt(&context, &shape) != SADDLE_OK) {
+        time_us += 20000u;
+        tick_at(time_us);
+    }
+    saddle_context_t shaped;
+    shape.half_step_intercept_m = config.half_step_intercept_m;
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&shaped, &shape));
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_join(&shaped, &input.command));
+    saddle_output_t expected;
+    saddle_input_t at = input;
+    for (at.time_us = 0; at.time_us < 4000000u; at.time_us += 20000u) {
+        TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_tick(&shaped, &at, &expected));
+        if (at.time_us > time_us) {
+            tick_at(at.time_us);
+        }
+    }
+    same_place(expected.plan.com_m, output.plan.com_m);
+    same_place(expected.plan.foot_m[SADDLE_LEFT], output.plan.foot_m[SADDLE_LEFT]);
+    same_place(expected.plan.foot_m[SADDLE_RIGHT], output.plan.foot_m[SADDLE_RIGHT]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, (double)expected.plan.time_to_heel_strike_s,
+                              (double)output.plan.time_to_heel_strike_s);
+}
+
+static void test_a_shape_is_taken_over_while_standing(void)
+{
+    const saddle_config_t shape = another_shape();
+    input.command.mode = SADDLE_COMMAND_STAND;
+    tick_at(0);
+    const saddle_plan_t before = output.plan;
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_adapt(&context, &shape));
+    no_position_jumps(&before, 0);
+    ASSERT_SAME_FLOAT(shape.swing_skew, context.model.config.swing_skew);
+}
+
+static void test_a_shape_that_cannot_be_used_is_rejected(void)
+{
+    saddle_config_t shape = another_shape();
+    saddle_context_t empty;
+    memset(&empty, 0, sizeof empty);
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_adapt(NULL, &shape));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_NULL, saddle_adapt(&context, NULL));
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_UNINITIALISED, saddle_adapt(&empty, &shape));
+    shape.lateral_offset_m = NAN;
+    TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_CONFIG, saddle_adapt(&context, &shape));
+    ASSERT_SAME_FLOAT(config.lateral_factor, context.model.config.lateral_factor);
+}
+
 static void test_plan_at_beyond_its_span_is_rejected(void)
 {
     saddle_plan_t plan;
@@ -1221,6 +1344,10 @@ int main(void)
     RUN_TEST(test_plan_at_of_a_steady_walk_is_the_next_ticks_in_every_field);
     RUN_TEST(test_a_damaged_context_gives_no_number_that_is_not_finite);
     RUN_TEST(test_a_damaged_context_gives_no_such_plan);
+    RUN_TEST(test_a_shape_is_taken_over_in_the_first_quarter_of_a_step_without_a_jump);
+    RUN_TEST(test_a_walk_goes_on_in_the_shape_that_it_took_over);
+    RUN_TEST(test_a_shape_is_taken_over_while_standing);
+    RUN_TEST(test_a_shape_that_cannot_be_used_is_rejected);
     RUN_TEST(test_plan_at_beyond_its_span_is_rejected);
     RUN_TEST(test_reference_at_once_is_the_plan_s);
     RUN_TEST(test_reference_goes_on_without_a_jump_from_standing_on);

@@ -261,6 +261,44 @@ saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *c
     return SADDLE_OK;
 }
 
+/* What of a configuration is a person's shape. */
+static void take_shape(saddle_config_t *config, const saddle_config_t *from)
+{
+    config->lateral_factor = from->lateral_factor;
+    config->lateral_offset_m = from->lateral_offset_m;
+    config->lateral_delay_rad = from->lateral_delay_rad;
+    config->vertical_offset_m = from->vertical_offset_m;
+    config->vertical_delay_rad = from->vertical_delay_rad;
+    config->strike_share = from->strike_share;
+    config->swing_begin = from->swing_begin;
+    config->swing_end = from->swing_end;
+    config->swing_skew = from->swing_skew;
+}
+
+saddle_status_t saddle_adapt(saddle_context_t *context, const saddle_config_t *config)
+{
+    if (context == NULL || config == NULL) {
+        return SADDLE_ERROR_NULL;
+    }
+    if (context->initialised != INITIALISED) {
+        return SADDLE_ERROR_UNINITIALISED;
+    }
+    saddle_config_t adapted;
+    saddle_copy(&adapted, &context->model.config, sizeof adapted);
+    take_shape(&adapted, config);
+    if (saddle_config_check(&adapted) != NULL) {
+        return SADDLE_ERROR_CONFIG;
+    }
+    saddle_model_t reshaped;
+    saddle_model_init(&reshaped, &adapted);
+    if (!saddle_stands(&context->planner) &&
+        !saddle_cycle_reshape(&context->planner.cycle, &context->model, &reshaped)) {
+        return SADDLE_ERROR_TIME;
+    }
+    saddle_copy(&context->model, &reshaped, sizeof reshaped);
+    return SADDLE_OK;
+}
+
 /* Beyond a tick, tick by tick: within the range of fixed point. */
 static void advance_far(saddle_planner_t *planner, const saddle_context_t *context, uint32_t dt_us)
 {

@@ -56,6 +56,14 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
  *  Without this call a walk begins from standing. */
 saddle_status_t saddle_join(saddle_context_t *context, const saddle_command_t *command);
 
+/** Go on in the shape of another configuration: its lateral_factor, lateral_offset_m, lateral_delay_rad,
+ *  vertical_offset_m, vertical_delay_rad, strike_share, swing_begin, swing_end and swing_skew are taken
+ *  over, and nothing else of it. For a plan that follows its wearer while walking. No position of the plan
+ *  jumps: a walk takes it over in the first quarter of a step, and what it changes there fades out within
+ *  that step. SADDLE_ERROR_TIME in the rest of a step, and nothing changes: call it again after the next
+ *  tick. SADDLE_ERROR_CONFIG where saddle_config_check() would not pass. Costs as much as saddle_init(). */
+saddle_status_t saddle_adapt(saddle_context_t *context, const saddle_config_t *config);
+
 /** The plan at time_us, from the last tick's time to the end of the next step (0.5 s while
  *  standing), under the command of the last tick; for a faster joint controller. Does not
  *  touch the context. SADDLE_ERROR_TIME, and a plan that is not valid, outside that span;

@@ -545,6 +545,13 @@ static bool can_end(const saddle_cycle_t *cycle, const saddle_model_t *model, fl
            saddle_can_brake(cycle->profile.speed_m_s, model->config.acceleration_m_s2, distance_m);
 }
 
+/* In the first half of the quarter after a landing. */
+static bool just_landed(const saddle_cycle_t *cycle)
+{
+    return !saddle_cycle_before_landing(cycle) && -2.0f * cycle->x_m >= cycle->quarter.length_m &&
+           air_after_landing(cycle, cycle->x_m) <= LANDING_AIR_MAX;
+}
+
 SADDLE_NOINLINE bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model,
                                        saddle_vec2_t step_m)
 {
@@ -552,8 +559,7 @@ SADDLE_NOINLINE bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model
     const float dx_m = step_m.x - cycle->last_step_m.x;
     const float dy_m = step_m.y - cycle->last_step_m.y;
     const float old_x_m = cycle->x_m;
-    if (saddle_cycle_before_landing(cycle) || -2.0f * old_x_m < cycle->quarter.length_m ||
-        air_after_landing(cycle, old_x_m) > LANDING_AIR_MAX) {
+    if (!just_landed(cycle)) {
         return false;
     }
     const float x_m = old_x_m - dx_m;
@@ -582,6 +588,27 @@ SADDLE_NOINLINE bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model
     set_phase(cycle, phase);
     follow_shape(cycle, model, phase, &place);
     redirect_swing(cycle, model, swing_m, speed_m_s, phase);
+    return true;
+}
+
+SADDLE_NOINLINE bool saddle_cycle_reshape(saddle_cycle_t *cycle, const saddle_model_t *model,
+                                          const saddle_model_t *reshaped)
+{
+    if (!just_landed(cycle)) {
+        return false;
+    }
+    const float x_m = cycle->x_m;
+    const float speed_m_s = cycle->profile.speed_m_s;
+    const saddle_sin_cos_t phase = saddle_cycle_phase(cycle);
+    const place_t reference = reference_at(cycle, model, phase);
+    const place_t place = place_at(cycle, &reference, x_m);
+    saddle_swing_state_t foot;
+    swing_foot(cycle, model, x_m, phase, &foot);
+    const saddle_vec2_t swing_m = {foot.position_m.x, foot.position_m.y};
+    cycle->quarter = saddle_quarter(reshaped, cycle->quarter.stance, cycle->quarter.length_m,
+                                    cycle->quarter.width_m, speed_m_s);
+    follow_shape(cycle, reshaped, phase, &place);
+    redirect_swing(cycle, reshaped, swing_m, speed_m_s, phase);
     return true;
 }
 

@@ -51,6 +51,11 @@ uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddle_model_t *model
  *  it is too late in the step or the foot lies where no plan can go on from. */
 bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model_t *model, saddle_vec2_t step_m);
 
+/** Go on by another model, whose shape differs: what it changes at the CoM and the swing foot fades out.
+ *  False, and nothing changes, but in the part of a step in which saddle_cycle_land() is possible. */
+bool saddle_cycle_reshape(saddle_cycle_t *cycle, const saddle_model_t *model,
+                          const saddle_model_t *reshaped);
+
 /** [E43] The swing foot is on the ground: it carries from now on, where the plan has it, and the CoM goes
  *  on from where it is. Before a landing only. False, and nothing changes, if no plan can go on so. */
 bool saddle_cycle_touch_down(saddle_cycle_t *cycle, const saddle_model_t *model,
