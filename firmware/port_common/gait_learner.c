@@ -9,7 +9,6 @@
 
 /* A departure that is larger is no matter of shape. */
 #define DEPARTURE_MAX_M 0.1f
-#define STRIKE_MAX_S 0.3f
 
 /* Fewer ticks show no wave. */
 #define SAMPLES_MIN 6.0f
@@ -91,10 +90,15 @@ static bool is_steady(const saddle_output_t *output)
     const saddle_plan_t *plan = &output->plan;
     return output->status == SADDLE_OK && output->faults == 0u &&
            (output->limits & NOT_AS_COMMANDED) == 0u &&
-           plan->mode == (uint8_t)SADDLE_MODE_WALKING && plan->support <= (uint8_t)SADDLE_RIGHT &&
-           plan->speed_m_s > 0.0f && plan->acceleration_m_s2 >= 0.0f &&
-           plan->acceleration_m_s2 <= 0.0f &&
+           plan->mode == (uint8_t)SADDLE_MODE_WALKING && plan->speed_m_s > 0.0f &&
+           plan->acceleration_m_s2 >= 0.0f && plan->acceleration_m_s2 <= 0.0f &&
            output->verdict.level != (uint8_t)SADDLE_LEVEL_UNSTABLE;
+}
+
+/* An index, whatever comes. */
+static uint8_t stance_of(const saddle_plan_t *plan)
+{
+    return plan->support == (uint8_t)SADDLE_LEFT ? SADDLE_LEFT : SADDLE_RIGHT;
 }
 
 static float seconds(uint32_t age_us)
@@ -107,13 +111,13 @@ static float seconds(uint32_t age_us)
 static bool learn_across(saddle_gait_learner_t *learner, const saddle_measurement_t *measured,
                          const saddle_plan_t *plan)
 {
-    const float age_s = seconds(measured->foot[plan->support].age_us);
-    const float half = plan->support == (uint8_t)SADDLE_LEFT ? 0.5f : -0.5f;
+    const uint8_t stance = stance_of(plan);
+    const float age_s = seconds(measured->foot[stance].age_us);
+    const float half = stance == (uint8_t)SADDLE_LEFT ? 0.5f : -0.5f;
     const float rate_m_s = plan->com_velocity_m_s.y;
-    const float planned_m = plan->com_m.y - plan->foot_m[plan->support].y +
-                            half * plan->step_width_m - rate_m_s * age_s;
-    const float departure_m =
-        half * learner->width_m - measured->foot[plan->support].cop_m.y - planned_m;
+    const float planned_m =
+        plan->com_m.y - plan->foot_m[stance].y + half * plan->step_width_m - rate_m_s * age_s;
+    const float departure_m = half * learner->width_m - measured->foot[stance].cop_m.y - planned_m;
     project(&learner->size, departure_m, planned_m - learner->config.lateral_offset_m);
     project(&learner->delay, departure_m, rate_m_s);
     learner->across_m += departure_m;
@@ -134,7 +138,7 @@ static bool learn_height(saddle_gait_learner_t *learner, const saddle_measuremen
 static void learn_swing(saddle_gait_learner_t *learner, const saddle_measurement_t *measured,
                         const saddle_plan_t *plan)
 {
-    const uint8_t stance = plan->support;
+    const uint8_t stance = stance_of(plan);
     const uint8_t swing = 1u - stance;
     const float rate_m_s = plan->swing_velocity_m_s.x;
     const float planned_m = plan->foot_m[swing].x - plan->foot_m[stance].x -
@@ -153,14 +157,12 @@ static void learn_strike(saddle_gait_learner_t *learner, const saddle_measuremen
         const bool airborne = !measured->foot[foot].contact;
         float *until_s = &learner->until_strike_s[foot];
         *until_s -= dt_s;
-        if (foot != plan->support && plan->time_to_heel_strike_s > 0.0f) {
+        if (foot != stance_of(plan) && plan->time_to_heel_strike_s > 0.0f) {
             *until_s = plan->time_to_heel_strike_s;
         }
         if (learner->airborne[foot] && !airborne) {
             const float late_s = -*until_s - 0.5f * dt_s - seconds(measured->foot[foot].age_us);
-            if (late_s > -STRIKE_MAX_S && late_s < STRIKE_MAX_S) {
-                project(&learner->strike, late_s, 1.0f);
-            }
+            project(&learner->strike, late_s, 1.0f);
         }
         learner->airborne[foot] = airborne;
     }
@@ -170,8 +172,8 @@ static void learn_strike(saddle_gait_learner_t *learner, const saddle_measuremen
 static void see_step(saddle_gait_learner_t *learner, const saddle_measurement_t *measured,
                      const saddle_plan_t *plan)
 {
-    if (plan->support != learner->stance) {
-        learner->stance = plan->support;
+    if (stance_of(plan) != learner->stance) {
+        learner->stance = stance_of(plan);
         learner->width_m =
             measured->foot[SADDLE_LEFT].cop_m.y - measured->foot[SADDLE_RIGHT].cop_m.y;
     }
@@ -188,7 +190,7 @@ static bool learn(saddle_gait_learner_t *learner, const saddle_input_t *input,
     }
     see_step(learner, measured, plan);
     learn_strike(learner, measured, plan, dt_s);
-    if (!measured->foot[plan->support].contact) {
+    if (!measured->foot[stance_of(plan)].contact) {
         return true; /* between two stance feet */
     }
     learner->samples += 1.0f;
@@ -276,11 +278,11 @@ void saddle_gait_learner_init(saddle_gait_learner_t *learner, const saddle_confi
     *learner = (saddle_gait_learner_t){.config = *config, .start = *config, .learning = *learning};
 }
 
-void saddle_gait_learner_tick(saddle_gait_learner_t *learner, saddle_context_t *context,
+bool saddle_gait_learner_tick(saddle_gait_learner_t *learner, saddle_context_t *context,
                               const saddle_input_t *input, const saddle_output_t *output)
 {
     if (!(learner->learning.share > 0.0f)) {
-        return;
+        return false;
     }
     const float dt_s = (float)(input->time_us - learner->last_us) * 1.0e-6f;
     const bool learned = learner->ticked && learn(learner, input, output, dt_s);
@@ -294,7 +296,8 @@ void saddle_gait_learner_tick(saddle_gait_learner_t *learner, saddle_context_t *
     if (!learned || passed) {
         begin_stride(learner, learned);
     }
-    if (learner->changed && saddle_adapt(context, &learner->config) == SADDLE_OK) {
-        learner->changed = false;
-    }
+    const bool taken_over =
+        learner->changed && saddle_adapt(context, &learner->config) == SADDLE_OK;
+    learner->changed = learner->changed && !taken_over;
+    return taken_over;
 }

@@ -62,8 +62,9 @@ void saddle_gait_learner_init(saddle_gait_learner_t *learner, const saddle_confi
                               const saddle_learning_config_t *learning);
 
 /** After each saddle_tick(): learn from its input and output, and let the context take over what was
- *  learned as soon as it can. Does nothing while learning.share is 0. */
-void saddle_gait_learner_tick(saddle_gait_learner_t *learner, saddle_context_t *context,
+ *  learned as soon as it can. True: it did, and plans by `config` from the next tick on. Does nothing while
+ *  learning.share is 0. */
+bool saddle_gait_learner_tick(saddle_gait_learner_t *learner, saddle_context_t *context,
                               const saddle_input_t *input, const saddle_output_t *output);
 
 #endif

@@ -2,6 +2,7 @@
  *  SIGTERM; 2: an option is wrong, or CAN or LCM cannot be opened. */
 #include "bus.h"
 #include "commanders.h"
+#include "config_file.h"
 #include "lcm_commands.h"
 #include "lcm_port.h"
 #include "options.h"
@@ -141,13 +142,25 @@ static bool require_auth(saddle_runner_t *runner, const char *path)
     return true;
 }
 
+/** Before the first tick too, so that a file that cannot be written is no surprise at the end. */
+static bool write_learned(const char *path, const saddle_config_t *config)
+{
+    if (path == NULL || saddle_config_file_write(path, config)) {
+        return true;
+    }
+    fprintf(stderr, SADDLE_PROGRAM ": --learned %s: %s\n", path, strerror(errno));
+    return false;
+}
+
 static int run(const saddle_options_t *options, ports_t *ports)
 {
     saddle_runner_t runner;
     saddle_runner_init(&runner, &options->config, options->lockstep, options->command_from,
                        &ports->bus, &ports->lcm, stop_pipe[0]);
     runner.lcm_commands_fd = ports->lcm_commands_fd;
-    if (!require_auth(&runner, options->command_key)) {
+    saddle_gait_learner_init(&runner.learner, &options->config, &options->learning);
+    if (!require_auth(&runner, options->command_key) ||
+        !write_learned(options->learned, &runner.learner.config)) {
         return EXIT_BAD_INPUT;
     }
     /* After LCM has started its threads, which do not need this priority. */
@@ -156,7 +169,7 @@ static int run(const saddle_options_t *options, ports_t *ports)
     saddle_runner_run(&runner);
     const saddle_report_t report = saddle_runner_report(&runner);
     saddle_report_print(&report);
-    return 0;
+    return write_learned(options->learned, &runner.learner.config) ? 0 : 1;
 }
 
 int main(int argc, char *argv[])

@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include "config_file.h"
 #include "lcm_commands.h"
 #include <getopt.h>
 #include <stdio.h>
@@ -17,23 +18,21 @@ static bool complain(const char *option, const char *value, const char *right)
     return false;
 }
 
-static void *field_of(saddle_config_t *config, const saddle_config_field_t *field)
-{
-    return (char *)config + field->offset;
-}
+/** saddle_config_field(), or another list. */
+typedef const saddle_config_field_t *fields_t(size_t index);
 
-static float value_of(const saddle_config_t *config, const saddle_config_field_t *field)
+static float value_of(const void *object, const saddle_config_field_t *field)
 {
     float value;
-    memcpy(&value, (const char *)config + field->offset, sizeof value);
+    memcpy(&value, (const char *)object + field->offset, sizeof value);
     return value;
 }
 
 /** The field whose name is the first `length` characters of a text; NULL: there is none. */
-static const saddle_config_field_t *find_field(const char *name, size_t length)
+static const saddle_config_field_t *find_field(fields_t *fields, const char *name, size_t length)
 {
     const saddle_config_field_t *field;
-    for (size_t i = 0; (field = saddle_config_field(i)) != NULL; ++i) {
+    for (size_t i = 0; (field = fields(i)) != NULL; ++i) {
         if (strlen(field->name) == length && memcmp(field->name, name, length) == 0) {
             return field;
         }
@@ -41,12 +40,13 @@ static const saddle_config_field_t *find_field(const char *name, size_t length)
     return NULL;
 }
 
-static bool set_field(saddle_options_t *options, const char *text)
+/** NAME=VALUE, of an object with these fields. */
+static bool set_field(const char *option, const char *text, fields_t *fields, void *object)
 {
     const size_t length = strcspn(text, "=");
-    const saddle_config_field_t *field = find_field(text, length);
+    const saddle_config_field_t *field = find_field(fields, text, length);
     if (field == NULL || text[length] != '=') {
-        return complain("set", text, "NAME=VALUE with a NAME that --help lists");
+        return complain(option, text, "NAME=VALUE with a NAME that --help lists");
     }
     char *end;
     const char *number = text + length + 1;
@@ -55,9 +55,9 @@ static bool set_field(saddle_options_t *options, const char *text)
         char right[80];
         snprintf(right, sizeof right, "a number from %g to %g", (double)field->min,
                  (double)field->max);
-        return complain("set", text, right);
+        return complain(option, text, right);
     }
-    memcpy(field_of(&options->config, field), &value, sizeof value);
+    memcpy((char *)object + field->offset, &value, sizeof value);
     return true;
 }
 
@@ -70,13 +70,8 @@ static bool set_clock(saddle_options_t *options, const char *text)
 
 static bool set_ankle(saddle_options_t *options, const char *text)
 {
-    static const char *const names[SADDLE_ANKLE_COUNT] = {
-        [SADDLE_ANKLE_ERF] = "erf",
-        [SADDLE_ANKLE_RIGID] = "rigid",
-        [SADDLE_ANKLE_CYCLOID] = "cycloid",
-    };
     for (int i = 0; i < SADDLE_ANKLE_COUNT; ++i) {
-        if (strcmp(names[i], text) == 0) {
+        if (strcmp(saddle_ankle_names[i], text) == 0) {
             options->config.ankle = (saddle_ankle_t)i;
             return true;
         }
@@ -108,7 +103,16 @@ static bool set_fifo(saddle_options_t *options, const char *text)
     return true;
 }
 
-static void print_help(const saddle_config_t *config)
+static void print_fields(fields_t *fields, const void *object)
+{
+    const saddle_config_field_t *field;
+    for (size_t i = 0; (field = fields(i)) != NULL; ++i) {
+        printf("  %-24s %8g %8g %8g\n", field->name, (double)value_of(object, field),
+               (double)field->min, (double)field->max);
+    }
+}
+
+static void print_help(const saddle_options_t *defaults)
 {
     puts("usage: " SADDLE_PROGRAM " [OPTION]...\n"
          "Walking planner and stability supervisor between CAN and LCM, one tick every 80 ms.\n\n"
@@ -123,13 +127,15 @@ static void print_help(const saddle_config_t *config)
          "  --clock CLOCK      realtime (default); lockstep: one tick per set of measurements\n"
          "  --ankle ANKLE      ankle strategy: erf (default), rigid, cycloid\n"
          "  --set NAME=VALUE   a parameter of the person or the device; repeatable\n"
+         "  --learn NAME=VALUE let the plan follow the wearer; repeatable: share=0.05 of each\n"
+         "                     stride's departure, the others say how far each field may go\n"
+         "  --learned FILE     write the configuration as learned to FILE, in the format of\n"
+         "                     saddlewalk --config, when this process ends\n"
          "  --help             this text\n\n"
          "parameter                   default     from       to");
-    const saddle_config_field_t *field;
-    for (size_t i = 0; (field = saddle_config_field(i)) != NULL; ++i) {
-        printf("  %-24s %8g %8g %8g\n", field->name, (double)value_of(config, field),
-               (double)field->min, (double)field->max);
-    }
+    print_fields(saddle_config_field, &defaults->config);
+    puts("\nof --learn");
+    print_fields(saddle_learning_field, &defaults->learning);
 }
 
 static bool take_option(saddle_options_t *options, int letter, char *argv[])
@@ -139,7 +145,9 @@ static bool take_option(saddle_options_t *options, int letter, char *argv[])
     case 'l': options->lcm = strcmp(optarg, "none") == 0 ? NULL : optarg; return true;
     case 'k': return set_clock(options, optarg);
     case 'a': return set_ankle(options, optarg);
-    case 's': return set_field(options, optarg);
+    case 's': return set_field("set", optarg, saddle_config_field, &options->config);
+    case 'e': return set_field("learn", optarg, saddle_learning_field, &options->learning);
+    case 'd': options->learned = optarg; return true;
     case 'm': return set_command_from(options, optarg);
     case 'y': options->command_key = optarg; return true;
     case 'f': return set_fifo(options, optarg);
@@ -189,7 +197,8 @@ static bool is_consistent(const saddle_options_t *options)
     }
     if (name != NULL) {
         fprintf(stderr, SADDLE_PROGRAM ": --set %s=%.9g: give a value that suits the others\n",
-                name, (double)value_of(config, find_field(name, strlen(name))));
+                name,
+                (double)value_of(config, find_field(saddle_config_field, name, strlen(name))));
     }
     return name == NULL;
 }
@@ -201,6 +210,8 @@ saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *
                                           {"clock", required_argument, NULL, 'k'},
                                           {"ankle", required_argument, NULL, 'a'},
                                           {"set", required_argument, NULL, 's'},
+                                          {"learn", required_argument, NULL, 'e'},
+                                          {"learned", required_argument, NULL, 'd'},
                                           {"command-from", required_argument, NULL, 'm'},
                                           {"fifo", required_argument, NULL, 'f'},
                                           {"command-key", required_argument, NULL, 'y'},
@@ -211,12 +222,13 @@ saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *
         .can = "auto",
         .lcm = DEFAULT_LCM,
         .config = saddle_config_default(DEFAULT_HEIGHT_M, DEFAULT_MASS_KG),
+        .learning = saddle_learning_default(),
     };
     int letter;
     opterr = 0;
     while ((letter = getopt_long(argc, argv, ":", known, NULL)) != -1) {
         if (letter == 'h') {
-            print_help(&options->config);
+            print_help(options);
             return SADDLE_OPTIONS_HELP;
         }
         if (!take_option(options, letter, argv)) {

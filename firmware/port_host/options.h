@@ -3,6 +3,7 @@
 #define SADDLEWALK_HOST_OPTIONS_H
 
 #include "announce.h"
+#include "gait_learner.h"
 #include "inbox.h"
 
 typedef struct {
@@ -15,6 +16,8 @@ typedef struct {
         *command_key;  /**< file with the key for authenticated commands; NULL: not required */
     int fifo_priority; /**< 0: the ordinary scheduler */
     saddle_config_t config;
+    saddle_learning_config_t learning;
+    const char *learned; /**< file for what was learned; NULL: none */
 } saddle_options_t;
 
 typedef enum { SADDLE_OPTIONS_RUN, SADDLE_OPTIONS_HELP, SADDLE_OPTIONS_WRONG } saddle_parsed_t;

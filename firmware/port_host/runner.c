@@ -145,13 +145,14 @@ static void send_frames(saddle_runner_t *runner, const saddle_output_t *output)
     }
 }
 
+/** A configuration that has changed holds from the next tick on. */
 static void publish(saddle_runner_t *runner, const saddle_input_t *input,
-                    const saddle_output_t *output)
+                    const saddle_output_t *output, bool config_changed)
 {
     const saddle_report_t report = saddle_runner_report(runner);
     const saddlewalk_status_t status = saddle_report_status(&report);
     const saddlewalk_health_t health = saddle_report_health(&report, output);
-    if (runner->timing.ticks % CONFIG_TICKS == 0) {
+    if (runner->timing.ticks % CONFIG_TICKS == 0 || config_changed) {
         saddle_lcm_publish_config(runner->lcm, &runner->context.model.config, input->time_us,
                                   runner->lockstep);
     }
@@ -180,12 +181,14 @@ static void tick(saddle_runner_t *runner, uint64_t time_us)
     const saddle_input_t *input = saddle_inbox_read(&runner->inbox, time_us);
     announce_untimed(runner);
     (void)saddle_tick(&runner->context, input, &output); /* the status is in the output */
+    const bool adapted =
+        saddle_gait_learner_tick(&runner->learner, &runner->context, input, &output);
     if (saddle_wire_session_expired(&runner->inbox.receiver, &output, runner->timing.ticks)) {
         open_session(runner);
     }
     send_session(runner);
     send_frames(runner, &output);
-    publish(runner, input, &output);
+    publish(runner, input, &output, adapted);
     saddle_bus_maintain(runner->bus);
     if (is_commandless(&output)) {
         saddle_inbox_release(&runner->inbox);

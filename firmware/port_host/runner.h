@@ -13,6 +13,7 @@
 #ifndef SADDLEWALK_HOST_RUNNER_H
 #define SADDLEWALK_HOST_RUNNER_H
 
+#include "gait_learner.h"
 #include "report.h"
 
 typedef struct {
@@ -23,6 +24,7 @@ typedef struct {
     bool lockstep;
     uint32_t untimed_ticks; /**< with measurements of a sender without a clock */
     saddle_context_t context;
+    saddle_gait_learner_t learner; /**< off, unless it was initialised otherwise */
     saddle_inbox_t inbox;
     saddle_timing_t timing;
     saddle_realtime_t realtime;

@@ -41,3 +41,15 @@ bool saddle_settings_read(const uint32_t *page, saddle_config_t *config, bool *l
     }
     return true;
 }
+
+void saddle_settings_write(uint32_t *page, const saddle_config_t *config, bool lockstep)
+{
+    const saddle_config_field_t *field;
+    page[SADDLE_SETTINGS_LOCKSTEP] = lockstep ? 1u : 0u;
+    page[SADDLE_SETTINGS_ANKLE] = (uint32_t)config->ankle;
+    for (size_t i = 0; (field = saddle_config_field(i)) != NULL; ++i) {
+        memcpy(&page[SADDLE_SETTINGS_FIELDS + i], (const char *)config + field->offset,
+               sizeof(float));
+    }
+    page[SADDLE_SETTINGS_CRC] = saddle_settings_crc(page);
+}

@@ -22,4 +22,8 @@ uint32_t saddle_settings_crc(const uint32_t *page);
  *  changed. saddle_init() checks the values. */
 bool saddle_settings_read(const uint32_t *page, saddle_config_t *config, bool *lockstep);
 
+/** Fill a page of SADDLE_SETTINGS_FIELDS words and one for each field, to be written to flash: what a
+ *  wearer's walk has taught, for one. */
+void saddle_settings_write(uint32_t *page, const saddle_config_t *config, bool lockstep);
+
 #endif

@@ -62,6 +62,12 @@ class Firmware:
         library().saddle_tick(self._context, inputs, self.output)
         return self.output
 
+    def adapt(self, config: Any) -> bool:
+        """saddle_adapt() to a saddle_config_t; whether it is the configuration now."""
+        status = library().saddle_adapt(self._context, config)
+        used = ffi().buffer(ffi().addressof(self._context.model, "config"))
+        return bool(status == library().SADDLE_OK and used[:] == ffi().buffer(config)[:])
+
     def plan_at(self, time_us: int) -> Any:
         """saddle_plan_at(): a saddle_plan_t, which is reused; not valid outside the core's span."""
         library().saddle_plan_at(self._context, time_us, self._plan)

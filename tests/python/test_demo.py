@@ -52,6 +52,32 @@ def rows(folder: Path) -> list[dict[str, str]]:
     return list(csv.DictReader((folder / "walk.csv").open(newline="")))
 
 
+def test_the_plan_learns_the_wearer_and_the_log_is_recomputed(tmp_path, ports, capsys):
+    """Who does not sway as far to the left as the plan has it, and whose height is another."""
+    fields = {"lateral_offset_m": 0.02, "vertical_offset_m": 0.01, "swing_skew": 1.47}
+    person, learned = tmp_path / "person.toml", tmp_path / "walk/learned.toml"
+    person.write_text(
+        "".join(f"{name} = {value}\n" for name, value in fields.items()) + 'ankle = "cycloid"\n'
+    )
+    bounds = ["--learn", "share=0.2", "--learn", "lateral_delay_rad=0.01"]
+    options = ["--config", str(person), *bounds]
+    assert demo(learned.parent, ports, "--speed", "1.1", "--duration", "40", *options) == 0
+    assert "500 ticks recomputed from the log: the same bits\n" in capsys.readouterr().out
+    found = load_config(argparse.Namespace(config=learned, height=None, mass=None))
+    assert 0 <= found.lateral_offset_m < 0.01
+    assert abs(found.lateral_delay_rad) == pytest.approx(0.01)
+    assert found.swing_begin != configuration({}).swing_begin
+    assert found.ankle == configuration({"ankle": 2}).ankle
+
+
+def test_what_cannot_be_learned_is_rejected(tmp_path, ports, capsys):
+    assert demo(tmp_path, ports, "--learn", "share=2") == 2
+    assert "--learn share=2: give a number from 0 to 0.3" in capsys.readouterr().err
+    options = ["--out", str(tmp_path), "--firmware", "qemu-m4", "--learn", "share=0.1"]
+    assert main(["demo", *options]) == 2
+    assert "--learn share=0.1: not with --firmware qemu-m4" in capsys.readouterr().err
+
+
 def test_demo_records_a_sound_walk_that_reads_back(tmp_path, ports, capsys):
     assert demo(tmp_path, ports) == 0
     shown = capsys.readouterr().out

@@ -94,10 +94,8 @@ static float distance_m(saddle_vec3_t a, saddle_vec3_t b)
 /* What the plan has now, and has when the learner has had its say. */
 static void watch(const saddle_input_t *input)
 {
-    const bool changed = learner.changed;
     saddle_plan_t after;
-    saddle_gait_learner_tick(&learner, &plan_context, input, &output);
-    taken_over += changed && !learner.changed ? 1u : 0u;
+    taken_over += saddle_gait_learner_tick(&learner, &plan_context, input, &output) ? 1u : 0u;
     TEST_ASSERT_EQUAL(SADDLE_OK, saddle_plan_at(&plan_context, input->time_us, &after));
     const float jumps_m[] = {distance_m(after.com_m, output.plan.com_m),
                              distance_m(after.foot_m[0], output.plan.foot_m[0]),
@@ -222,10 +220,11 @@ static void test_off_it_learns_nothing(void)
     TEST_ASSERT_EQUAL_UINT32(0, taken_over);
 }
 
-/* Every stride has one tick in which something is amiss. */
-static void spoiled(void (*spoil)(saddle_input_t *, saddle_output_t *))
+typedef void spoil_t(saddle_input_t *, saddle_output_t *);
+
+/* A tick in so many is spoiled. */
+static void walk_spoiled(spoil_t *spoil, int every)
 {
-    change_wearer();
     begin();
     for (int i = 0; i < TICKS_A_MINUTE; i++) {
         saddle_output_t body;
@@ -237,13 +236,12 @@ static void spoiled(void (*spoil)(saddle_input_t *, saddle_output_t *))
         saddle_tick(&wearer_context, &input, &body);
         input.measurement = measured(&body.plan);
         saddle_tick(&plan_context, &input, &output);
-        if (i % 8 == 0) {
+        if (i % every == 0) {
             spoil(&input, &output);
         }
-        saddle_gait_learner_tick(&learner, &plan_context, &input, &output);
+        (void)saddle_gait_learner_tick(&learner, &plan_context, &input, &output);
         time_us += TICK_US;
     }
-    same_config(&config);
 }
 
 static void not_finite_across(saddle_input_t *input, saddle_output_t *tick_output)
@@ -299,20 +297,102 @@ static void stops(saddle_input_t *input, saddle_output_t *tick_output)
     tick_output->plan.mode = (uint8_t)SADDLE_MODE_STOPPING;
 }
 
-static void far_aside(saddle_input_t *input, saddle_output_t *tick_output)
+static void stands_still(saddle_input_t *input, saddle_output_t *tick_output)
+{
+    (void)input;
+    tick_output->plan.speed_m_s = 0.0f;
+}
+
+static void far_left(saddle_input_t *input, saddle_output_t *tick_output)
+{
+    input->measurement.foot[tick_output->plan.support].cop_m.y -= 0.3f;
+}
+
+static void far_right(saddle_input_t *input, saddle_output_t *tick_output)
 {
     input->measurement.foot[tick_output->plan.support].cop_m.y += 0.3f;
 }
 
+static void far_up(saddle_input_t *input, saddle_output_t *tick_output)
+{
+    (void)tick_output;
+    input->measurement.com.height_m += 0.2f;
+}
+
+static void far_down(saddle_input_t *input, saddle_output_t *tick_output)
+{
+    (void)tick_output;
+    input->measurement.com.height_m -= 0.2f;
+}
+
 static void test_a_stride_in_which_anything_is_amiss_teaches_nothing(void)
 {
-    void (*const spoils[])(saddle_input_t *, saddle_output_t *) = {
-        not_finite_across, not_finite_height, fault,      limit, failed,
-        unstable,          speeds_up,         slows_down, stops, far_aside};
+    spoil_t *const spoils[] = {
+        not_finite_across, not_finite_height, fault,      limit,   failed,
+        unstable,          speeds_up,         slows_down, stops,   stands_still,
+        far_left,          far_right,         far_up,     far_down};
     for (size_t i = 0; i < COUNT_OF(spoils); i++) {
         setUp();
-        spoiled(spoils[i]);
+        change_wearer();
+        walk_spoiled(spoils[i], 8); /* a stride has 14 ticks */
+        same_config(&config);
     }
+}
+
+static void swing_not_finite(saddle_input_t *input, saddle_output_t *tick_output)
+{
+    input->measurement.foot[1 - tick_output->plan.support].cop_m.x = NAN;
+}
+
+static void both_feet_on_the_ground(saddle_input_t *input, saddle_output_t *tick_output)
+{
+    (void)tick_output;
+    input->measurement.foot[0].contact = input->measurement.foot[1].contact = true;
+}
+
+static void test_a_foot_that_shows_nothing_teaches_nothing(void)
+{
+    spoil_t *const spoils[] = {swing_not_finite, both_feet_on_the_ground};
+    for (size_t i = 0; i < COUNT_OF(spoils); i++) {
+        setUp();
+        change_wearer();
+        walk_spoiled(spoils[i], 1);
+        WITHIN(0.01, lateral_delay_rad);
+        ASSERT_SAME_FLOAT(config.swing_begin, learner.config.swing_begin);
+    }
+    ASSERT_SAME_FLOAT(config.strike_share, learner.config.strike_share);
+}
+
+static void left_by_5_cm(saddle_input_t *input, saddle_output_t *tick_output)
+{
+    (void)tick_output;
+    input->measurement.foot[0].cop_m.y -= 0.05f;
+    input->measurement.foot[1].cop_m.y -= 0.05f;
+}
+
+/* A bound that reaches beyond what the core accepts. */
+static void test_it_stays_a_configuration_that_can_be_used(void)
+{
+    config.lateral_offset_m = wearer.lateral_offset_m = 0.08f;
+    learning.lateral_offset_m = 0.1f;
+    walk_spoiled(left_by_5_cm, 1);
+    TEST_ASSERT_NULL(saddle_config_check(&learner.config));
+    TEST_ASSERT_DOUBLE_WITHIN(0.005, 0.095, (double)learner.config.lateral_offset_m);
+    ASSERT_SAME_FLOAT(learner.config.lateral_offset_m, plan_context.model.config.lateral_offset_m);
+}
+
+/* Five ticks a stride show no wave. */
+static void test_too_few_ticks_teach_nothing(void)
+{
+    change_wearer();
+    config.tick_max_s = wearer.tick_max_s = 0.25f;
+    begin();
+    for (int i = 0; i < 100; i++) {
+        tick();
+        TEST_ASSERT_EQUAL_HEX32(0, output.limits & SADDLE_LIMIT_TICK_GAP);
+        time_us += 245000u - TICK_US;
+    }
+    same_config(&config);
 }
 
 /* The paper's plan has no height, heel strike or swing of a person. */
@@ -348,7 +428,7 @@ static void test_old_measurements_are_compared_with_the_plan_of_their_time(void)
         last = measured(&body.plan);
         last.com.age_us = last.foot[0].age_us = last.foot[1].age_us = 20000;
         saddle_tick(&plan_context, &input, &output);
-        saddle_gait_learner_tick(&learner, &plan_context, &input, &output);
+        (void)saddle_gait_learner_tick(&learner, &plan_context, &input, &output);
         time_us += 20000;
     }
     WITHIN(0.01, lateral_delay_rad);
@@ -399,6 +479,9 @@ int main(void)
     RUN_TEST(test_noise_moves_it_little);
     RUN_TEST(test_off_it_learns_nothing);
     RUN_TEST(test_a_stride_in_which_anything_is_amiss_teaches_nothing);
+    RUN_TEST(test_a_foot_that_shows_nothing_teaches_nothing);
+    RUN_TEST(test_it_stays_a_configuration_that_can_be_used);
+    RUN_TEST(test_too_few_ticks_teach_nothing);
     RUN_TEST(test_what_the_plan_does_not_have_is_not_learned);
     RUN_TEST(test_old_measurements_are_compared_with_the_plan_of_their_time);
     RUN_TEST(test_bounds_are_checked_by_name);

@@ -58,6 +58,19 @@ static void test_every_field_is_read_from_the_page(void)
     TEST_ASSERT_FALSE(lockstep);
 }
 
+static void test_a_page_is_read_as_it_was_written(void)
+{
+    uint32_t written[256];
+    memset(written, 0xFF, sizeof written);
+    TEST_ASSERT_TRUE(saddle_settings_read(page, &config, &lockstep));
+    saddle_settings_write(written, &config, lockstep);
+    TEST_ASSERT_EQUAL_MEMORY(page, written, sizeof written);
+    saddle_settings_write(written, &before, false);
+    TEST_ASSERT_TRUE(saddle_settings_read(written, &config, &lockstep));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &config, sizeof config);
+    TEST_ASSERT_FALSE(lockstep);
+}
+
 static void test_a_page_that_was_never_written_is_rejected(void)
 {
     memset(page, 0xFF, sizeof page);
@@ -93,6 +106,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_every_field_is_read_from_the_page);
+    RUN_TEST(test_a_page_is_read_as_it_was_written);
     RUN_TEST(test_a_page_that_was_never_written_is_rejected);
     RUN_TEST(test_every_flipped_bit_is_rejected);
     RUN_TEST(test_the_names_of_the_fields_count);

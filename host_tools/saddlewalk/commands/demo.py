@@ -22,7 +22,16 @@ from saddlewalk.commands.emulate import (
 from saddlewalk.commands.view import add_view_options
 from saddlewalk.config import host_arguments, load_config
 from saddlewalk.errors import UserError
-from saddlewalk.logs.run_files import CAN_LOG, FILM, LCM_LOG, PICTURE, STRIP, TABLE, run_names
+from saddlewalk.logs.run_files import (
+    CAN_LOG,
+    FILM,
+    LCM_LOG,
+    LEARNED,
+    PICTURE,
+    STRIP,
+    TABLE,
+    run_names,
+)
 from saddlewalk.outputs import OutputFolder, add_input, add_output
 from saddlewalk.paths import in_checkout
 from saddlewalk.printable import printable
@@ -91,6 +100,15 @@ def add_parser(subparsers: Any) -> None:
         metavar="FILE",
         help="authenticate the commands with the key in FILE, or with a new key: "
         "docs/authentication.md",
+    )
+    parser.add_argument(
+        "--learn",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="let the plan follow the wearer: share=0.05 of what each stride departs; the other "
+        "names, which saddlewalk-host --help lists, say how far each field may go; repeatable. "
+        f"{LEARNED} has the configuration as learned, for --config",
     )
     add_view_options(
         parser,
@@ -214,6 +232,7 @@ def _clock(args: argparse.Namespace) -> str:
         ("can", args.can, "auto"),
         ("command-key", args.command_key, None),
         ("view", "" if args.view else None, None),
+        ("learn", " ".join(args.learn), ""),
     )
     for option, value, default in given:
         if value not in (None, default):
@@ -247,10 +266,13 @@ def _host(
     options = [f"--can={args.can}", f"--clock={args.clock}", *host_arguments(config)]
     options += [f"--lcm={args.lcm}"] if args.lcm else []
     options += [f"--command-key={args.command_key}"] if args.command_key else []
+    options += [f"--learn={bound}" for bound in args.learn]
     with open_bus(args.can) as bus:
         _check_bus_is_free(bus, lcm)
-        with _recorder(run_folder, lcm) as recorder, running_host(*options):
-            yield bus, recorder
+        with _recorder(run_folder, lcm) as recorder:
+            options += [f"--learned={recorder.csv_path.with_name(LEARNED)}"] if args.learn else []
+            with running_host(*options):
+                yield bus, recorder
 
 
 @contextlib.contextmanager
@@ -357,7 +379,9 @@ def _finish(
         print(f"timing: {exoskeleton.punctuality.words()}")
     for good, words in checks:
         print(f"  {'ok ' if good else 'BAD'}  {words}")
-    for path in (folder / name for name in (PICTURE, STRIP, FILM, TABLE, CAN_LOG, LCM_LOG)):
+    for path in (
+        folder / name for name in (PICTURE, STRIP, FILM, TABLE, CAN_LOG, LCM_LOG, LEARNED)
+    ):
         if path.exists():
             print(f"  {printable(path)}  {path.stat().st_size / 1024:.0f} KiB")
     print(_what_next(folder))

@@ -214,8 +214,6 @@ class _LcmRerun:
         self._firmware = None
 
     def _compute(self, firmware: Firmware, tick: LoggedTick) -> None:
-        if tick.config and _fields(tick.config) != _fields(self._config):
-            self.report.add_gap(f"the configuration changes at tick {tick.number}")
         output = firmware.tick(tick.inputs)
         self.report.ticks += 1
         differences = [
@@ -227,6 +225,15 @@ class _LcmRerun:
         first = next(filter(None, differences), None)
         if first:
             self.report.add_difference(first)
+        if tick.config and _fields(tick.config) != _fields(self._config):
+            self._adapt(firmware, tick)
+
+    def _adapt(self, firmware: Firmware, tick: LoggedTick) -> None:
+        """The plan follows what was learned of the wearer, from the next tick on."""
+        if firmware.adapt(_core_config(tick.config)):
+            self._config = tick.config
+        else:
+            self.report.add_gap(f"the configuration changes at tick {tick.number}")
 
     def _recorded(self, tick: LoggedTick, channel: str) -> Event | None:
         event = tick.outputs.get(channel)

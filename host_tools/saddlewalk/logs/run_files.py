@@ -6,6 +6,7 @@ from saddlewalk.paths import source
 
 LCM_LOG, CAN_LOG, TABLE, PICTURE = "walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"
 STRIP, FILM = "body.png", "body.gif"  # of a body in MuJoCo
+LEARNED = "learned.toml"
 TABLE_FORMATS = ("csv", "parquet")
 
 
@@ -32,4 +33,4 @@ def run_names() -> tuple[str, ...]:
     made += [
         str(exported(log, form) / name) for form in TABLE_FORMATS for name in table_names(form)
     ]
-    return (LCM_LOG, CAN_LOG, TABLE, PICTURE, STRIP, FILM, *made)
+    return (LCM_LOG, CAN_LOG, TABLE, PICTURE, STRIP, FILM, LEARNED, *made)
