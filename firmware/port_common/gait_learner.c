@@ -101,9 +101,10 @@ static uint8_t stance_of(const saddle_plan_t *plan)
     return plan->support == (uint8_t)SADDLE_LEFT ? SADDLE_LEFT : SADDLE_RIGHT;
 }
 
-static float seconds(uint32_t age_us)
+/* Since it was measured, with what its age does not say. */
+static float since_s(const saddle_gait_learner_t *learner, uint32_t age_us)
 {
-    return (float)age_us * 1.0e-6f;
+    return (float)age_us * 1.0e-6f + learner->config.sensor_latency_s;
 }
 
 /* y of the CoM from the line midway between the feet: by the foot that carries, so that the way of the
@@ -112,7 +113,7 @@ static bool learn_across(saddle_gait_learner_t *learner, const saddle_measuremen
                          const saddle_plan_t *plan)
 {
     const uint8_t stance = stance_of(plan);
-    const float age_s = seconds(measured->foot[stance].age_us);
+    const float age_s = since_s(learner, measured->foot[stance].age_us);
     const float half = stance == (uint8_t)SADDLE_LEFT ? 0.5f : -0.5f;
     const float rate_m_s = plan->com_velocity_m_s.y;
     const float planned_m =
@@ -128,7 +129,7 @@ static bool learn_height(saddle_gait_learner_t *learner, const saddle_measuremen
                          const saddle_plan_t *plan)
 {
     const float rate_m_s = plan->com_velocity_m_s.z;
-    const float planned_m = plan->com_m.z - rate_m_s * seconds(measured->com.age_us);
+    const float planned_m = plan->com_m.z - rate_m_s * since_s(learner, measured->com.age_us);
     const float departure_m = measured->com.height_m - planned_m;
     project(&learner->climb, departure_m, rate_m_s);
     learner->height_m += departure_m;
@@ -142,7 +143,7 @@ static void learn_swing(saddle_gait_learner_t *learner, const saddle_measurement
     const uint8_t swing = 1u - stance;
     const float rate_m_s = plan->swing_velocity_m_s.x;
     const float planned_m = plan->foot_m[swing].x - plan->foot_m[stance].x -
-                            rate_m_s * seconds(measured->foot[swing].age_us);
+                            rate_m_s * since_s(learner, measured->foot[swing].age_us);
     const float x_m = measured->foot[swing].cop_m.x - measured->foot[stance].cop_m.x;
     if (!measured->foot[swing].contact) {
         project(&learner->swing, x_m - planned_m, rate_m_s);
@@ -161,7 +162,8 @@ static void learn_strike(saddle_gait_learner_t *learner, const saddle_measuremen
             *until_s = plan->time_to_heel_strike_s;
         }
         if (learner->airborne[foot] && !airborne) {
-            const float late_s = -*until_s - 0.5f * dt_s - seconds(measured->foot[foot].age_us);
+            const float late_s =
+                -*until_s - 0.5f * dt_s - since_s(learner, measured->foot[foot].age_us);
             project(&learner->strike, late_s, 1.0f);
         }
         learner->airborne[foot] = airborne;
