@@ -18,9 +18,14 @@ void setUp(void)
 
 void tearDown(void) {}
 
+static bool update_of(uint32_t faults, bool unstable)
+{
+    return saddle_safe_state_update(&state, model_of(&config), faults, unstable, DT_S);
+}
+
 static bool update(uint32_t faults)
 {
-    return saddle_safe_state_update(&state, model_of(&config), faults, DT_S);
+    return update_of(faults, false);
 }
 
 static const uint32_t LOST[] = {SADDLE_FAULT_COMMAND_STALE, SADDLE_FAULT_COM_STALE,
@@ -187,6 +192,25 @@ static void test_stale_command_stops_a_planner_alone_too(void)
     }
 }
 
+/* One second is 13 ticks. */
+static void test_walk_goes_on_a_second_after_a_wearer_was_last_unstable(void)
+{
+    update(0);
+    update((uint32_t)SADDLE_FAULT_COM_STALE);
+    for (int tick = 0; tick < 100; tick++) {
+        TEST_ASSERT_TRUE(update_of(0, true));
+    }
+    for (int tick = 1; tick <= 20; tick++) {
+        TEST_ASSERT_EQUAL(tick < 13, update(0));
+    }
+}
+
+static void test_instability_alone_stops_nothing(void)
+{
+    update(0);
+    TEST_ASSERT_FALSE(update_of(0, true));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -204,5 +228,7 @@ int main(void)
     RUN_TEST(test_measurement_of_which_a_part_never_came_stops);
     RUN_TEST(test_long_gap_between_the_ticks_stops);
     RUN_TEST(test_stale_command_stops_a_planner_alone_too);
+    RUN_TEST(test_walk_goes_on_a_second_after_a_wearer_was_last_unstable);
+    RUN_TEST(test_instability_alone_stops_nothing);
     return UNITY_END();
 }

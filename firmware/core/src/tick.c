@@ -235,8 +235,10 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
         saddle_measurement_check(&context->plausibility, &context->model, sampled,
                                  saddle_planner_speed_m_s(&context->planner), sensed.dt_s);
     output->faults = take_command(context, input);
-    const bool stop = saddle_safe_state_update(&context->safe_state, &context->model,
-                                               sensed.faults | output->faults, sensed.dt_s);
+    const bool unstable = context->supervisor.level.level == (uint8_t)SADDLE_LEVEL_UNSTABLE;
+    const bool stop =
+        saddle_safe_state_update(&context->safe_state, &context->model,
+                                 sensed.faults | output->faults, unstable, sensed.dt_s);
     plan_walk(context, &sensed, stop, dt_us, output);
     supervise(context, &sensed, output);
     move_landing(context, &output->plan);

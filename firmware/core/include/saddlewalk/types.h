@@ -90,7 +90,8 @@ typedef struct {
     float command_max_age_s;    /**< an older command times out: the walk stops */
     float lost_inputs_stop;     /**< 1: lost inputs stop the walk; 0: for recordings, or a
                                      device with a safe state of its own */
-    float resume_time_s;        /**< inputs that were lost must be good for so long */
+    float resume_time_s;        /**< inputs that were lost must be good for so long, and nobody
+                                     unstable */
     float com_max_age_s;        /**< older measurements of the CoM are not used */
     float foot_max_age_s;       /**< nor of a foot's CoP and contact */
     float sensor_latency_s;     /**< that ages do not contain: of sensors and filters. Every

@@ -11,14 +11,14 @@ static const uint32_t LOST =
     (uint32_t)SADDLE_FAULT_RIGHT_STALE | (uint32_t)SADDLE_FAULT_RIGHT_FROZEN;
 
 bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_model_t *model,
-                              uint32_t faults, float dt_s)
+                              uint32_t faults, bool unstable, float dt_s)
 {
     const bool commanded = (faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) == 0u;
     const bool measured = (faults & UNUSABLE) == 0u;
     state->armed = state->armed || (faults & STALE) != STALE;
     state->lost_s = measured ? 0.0f : state->lost_s + dt_s;
     const bool lost = (faults & LOST) != 0u || state->lost_s > model->config.com_max_age_s;
-    const bool good = commanded && (measured || !state->armed);
+    const bool good = commanded && !unstable && (measured || !state->armed);
     state->good_s = good ? state->good_s + dt_s : 0.0f;
     if (!commanded || (state->armed && lost)) {
         state->stopped = true;
