@@ -136,6 +136,26 @@ static void test_a_departure_from_the_plan_grows_as_a_pendulum(void)
     TEST_ASSERT_GREATER_THAN_INT(5, landings);
 }
 
+/* A wearer on the plan whose parts were each measured at another of the last ticks. */
+static void test_each_part_is_brought_forward_by_its_own_age(void)
+{
+    for (int k = 0; k < 24; k++) {
+        saddle_measurement_t measured = measured_of(&plan, &NONE, 2 * TICK_US);
+        tick_of(TICK_US);
+        const saddle_measurement_t later = measured_of(&plan, &NONE, TICK_US);
+        tick_of(TICK_US);
+        const saddle_measurement_t expected = measured_of(&plan, &NONE, 0);
+        if (k % 2 == 0) {
+            measured.foot[SADDLE_LEFT] = later.foot[SADDLE_LEFT];
+        } else {
+            measured.com = later.com;
+            measured.foot[SADDLE_LEFT] = expected.foot[SADDLE_LEFT];
+        }
+        bring_forward(&measured);
+        assert_measured(2e-6, &expected);
+    }
+}
+
 /* The plan so long after the last tick, which is before the next. */
 static saddle_plan_t plan_after(uint32_t after_us)
 {
@@ -235,6 +255,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_departure_from_the_plan_grows_as_a_pendulum);
+    RUN_TEST(test_each_part_is_brought_forward_by_its_own_age);
     RUN_TEST(test_between_two_ticks_the_plan_moves_evenly);
     RUN_TEST(test_close_ticks_reach_as_far_back);
     RUN_TEST(test_nothing_is_brought_further_forward_than_a_fifth_of_a_second);

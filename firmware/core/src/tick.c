@@ -177,6 +177,12 @@ static SADDLE_NOINLINE void plan_walk(saddle_context_t *context, const saddle_se
     saddle_remember_plan(&context->past, &output->plan, dt_us);
 }
 
+static bool is_old(const saddle_measurement_t *sampled)
+{
+    return (sampled->com.age_us | sampled->foot[SADDLE_LEFT].age_us |
+            sampled->foot[SADDLE_RIGHT].age_us) != 0u;
+}
+
 /* The measured posture, as of now, against the plan. [E46] */
 static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_sensed_t *sensed,
                                       saddle_output_t *output)
@@ -185,7 +191,7 @@ static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_se
     saddle_measurement_t present;
     saddle_sensed_t now = *sensed;
     read_intent(&context->planner, &context->model, &output->plan, &intent);
-    if (sensed->sampled->com.age_us > 0u && intent.leads && (sensed->faults & UNMEASURED) == 0u) {
+    if (is_old(sensed->sampled) && intent.leads && (sensed->faults & UNMEASURED) == 0u) {
         intent.stance_then =
             saddle_bring_forward(&context->past, &context->model, sensed->sampled, &present);
         now.measurement = &present;

@@ -97,15 +97,39 @@ static void moment_at(const saddle_past_t *past, uint32_t age_us, moment_t *mome
     }
 }
 
-/* From the reference's. */
-static departure_t departure_from(const moment_t *then, const saddle_measurement_t *measured,
-                                  float w)
+/* A part of the measurement: the plan when it was made, and how a departure has grown since. */
+typedef struct {
+    moment_t then;
+    saddle_growth_t growth;
+} part_t;
+
+/* The foot landed before it was planned to, or stayed. */
+static bool stays(const moment_t *then, const saddle_measurement_t *measured, int side)
 {
-    const int stance = then->plan->support;
-    const saddle_vec2_t planned_m = saddle_vec2_sub(then->com_m, then->foot_m[stance]);
+    return measured->foot[side].contact && !then->plan->carries[side];
+}
+
+static void part_of_age(const saddle_past_t *past, const saddle_model_t *model, uint32_t age_us,
+                        const saddle_measurement_t *measured, part_t *part)
+{
+    const uint32_t forward_us = age_us < FORWARD_MAX_US ? age_us : FORWARD_MAX_US;
+    moment_at(past, forward_us, &part->then);
+    const bool as_planned =
+        !stays(&part->then, measured, SADDLE_LEFT) && !stays(&part->then, measured, SADDLE_RIGHT);
+    const float grows_s = as_planned ? GROWING_SHARE * 1.0e-6f * (float)forward_us : 0.0f;
+    part->growth = saddle_growth(model, grows_s, false);
+}
+
+/* From the reference's. The stance foot's part says where the CoM is, com how fast. */
+static departure_t departure_from(const moment_t *com, const moment_t *stance_foot,
+                                  const saddle_measurement_t *measured, float w)
+{
+    const int stance = com->plan->support;
+    const saddle_vec2_t planned_m =
+        saddle_vec2_sub(stance_foot->com_m, stance_foot->foot_m[stance]);
     const saddle_vec2_t ahead_m =
         saddle_vec2_sub(saddle_vec2_scale(1.0f / w, measured->com.velocity_m_s),
-                        saddle_vec2_sub(then->xcom_m, then->com_m));
+                        saddle_vec2_sub(com->xcom_m, com->com_m));
     departure_t departure;
     departure.com_m =
         saddle_vec2_scale(-1.0f, saddle_vec2_add(measured->foot[stance].cop_m, planned_m));
@@ -123,10 +147,22 @@ static departure_t grown(const departure_t *departure, const saddle_growth_t *gr
     return grown;
 }
 
-/* The foot landed before it was planned to, or stayed. */
-static bool stays(const moment_t *then, const saddle_measurement_t *measured, int side)
+static void bring_foot(const saddle_past_plan_t *now, const part_t *part,
+                       const departure_t *departure, int side, saddle_measurement_t *present)
 {
-    return measured->foot[side].contact && !then->plan->carries[side];
+    const moment_t *then = &part->then;
+    saddle_vec2_t *cop_m = &present->foot[side].cop_m;
+    const departure_t departed = grown(departure, &part->growth);
+    const saddle_vec2_t moved_m =
+        saddle_vec2_add(saddle_vec2_sub(now->com_m, then->com_m),
+                        saddle_vec2_sub(departed.com_m, departure->com_m));
+    *cop_m = saddle_vec2_sub(*cop_m, moved_m);
+    if (!stays(then, present, side)) {
+        *cop_m = saddle_vec2_add(*cop_m, saddle_vec2_sub(now->foot_m[side], then->foot_m[side]));
+        if (now->carries[side] != then->plan->carries[side]) {
+            present->foot[side].contact = now->carries[side];
+        }
+    }
 }
 
 /* [E46] */
@@ -135,31 +171,25 @@ saddle_side_t saddle_bring_forward(const saddle_past_t *past, const saddle_model
                                    saddle_measurement_t *present)
 {
     const float w = model->body.natural_frequency_rad_s;
-    const uint32_t age_us =
-        measured->com.age_us < FORWARD_MAX_US ? measured->com.age_us : FORWARD_MAX_US;
     const saddle_past_plan_t *now = &past->plans[past->newest];
-    moment_t then;
-    moment_at(past, age_us, &then);
-    const bool as_planned = !stays(&then, measured, 0) && !stays(&then, measured, 1);
-    const saddle_growth_t growth =
-        saddle_growth(model, as_planned ? GROWING_SHARE * 1.0e-6f * (float)age_us : 0.0f, false);
-    const departure_t departure = departure_from(&then, measured, w);
-    const departure_t departed = grown(&departure, &growth);
-    const saddle_vec2_t moved_m = saddle_vec2_add(saddle_vec2_sub(now->com_m, then.com_m),
-                                                  saddle_vec2_sub(departed.com_m, departure.com_m));
+    part_t com, other[2];
+    const part_t *foot[2];
+    part_of_age(past, model, measured->com.age_us, measured, &com);
+    for (int side = 0; side < 2; side++) {
+        foot[side] = &com;
+        if (measured->foot[side].age_us != measured->com.age_us) {
+            foot[side] = &other[side];
+            part_of_age(past, model, measured->foot[side].age_us, measured, &other[side]);
+        }
+    }
+    const saddle_side_t stance = (saddle_side_t)com.then.plan->support;
+    const departure_t departure = departure_from(&com.then, &foot[stance]->then, measured, w);
+    const departure_t departed = grown(&departure, &com.growth);
     const saddle_vec2_t ahead_m = saddle_vec2_add(saddle_vec2_sub(now->xcom_m, now->com_m),
                                                   saddle_vec2_sub(departed.xcom_m, departed.com_m));
     saddle_copy(present, measured, sizeof *present);
     present->com.velocity_m_s = saddle_vec2_scale(w, ahead_m);
-    for (int side = 0; side < 2; side++) {
-        saddle_vec2_t *cop_m = &present->foot[side].cop_m;
-        *cop_m = saddle_vec2_sub(*cop_m, moved_m);
-        if (!stays(&then, measured, side)) {
-            *cop_m = saddle_vec2_add(*cop_m, saddle_vec2_sub(now->foot_m[side], then.foot_m[side]));
-            if (now->carries[side] != then.plan->carries[side]) {
-                present->foot[side].contact = now->carries[side];
-            }
-        }
-    }
-    return (saddle_side_t)then.plan->support;
+    bring_foot(now, foot[SADDLE_LEFT], &departure, SADDLE_LEFT, present);
+    bring_foot(now, foot[SADDLE_RIGHT], &departure, SADDLE_RIGHT, present);
+    return stance;
 }
