@@ -5,6 +5,7 @@ import csv
 import functools
 import itertools
 import math
+import re
 import signal
 import socket
 import subprocess
@@ -81,7 +82,12 @@ def test_what_cannot_be_learned_is_rejected(tmp_path, ports, capsys):
 def test_demo_records_a_sound_walk_that_reads_back(tmp_path, ports, capsys):
     assert demo(tmp_path, ports) == 0
     shown = capsys.readouterr().out
-    assert "did not fall" in shown and "BAD" not in shown and "push of 8 N s to 90 degrees" in shown
+    assert (
+        "did not fall" in shown and "BAD" not in shown and "push of 22 N s to 180 degrees" in shown
+    )
+    assert re.search(
+        r"1[23]\.\d\d s  recovery step, 0\.[1-9]\d m from the planned landing\n", shown
+    )
     assert "stands at the end" in shown
     assert f" view {tmp_path}/walk.lcmlog    # this walk in the browser" in shown
     assert f"{round(22 / TICK_S)} ticks recomputed from the log: the same bits\n" in shown
@@ -102,9 +108,11 @@ def test_demo_records_a_sound_walk_that_reads_back(tmp_path, ports, capsys):
     assert len(walk) == round(22 / TICK_S) == len(speeds)
     at = [speeds[time_s] for time_s in (0.96, 6.0, 10.0, 21.92)]
     assert at == pytest.approx([0.0, 0.8, 1.2, 0.0], abs=1e-4)  # the wire's resolution
-    walked_m = sum(speeds.values()) * TICK_S
-    assert float(walk[-1]["true_com_x_m"]) == pytest.approx(walked_m, abs=0.2)
-    assert float(walk[-1]["pushed_y_n_s"]) == pytest.approx(8.0, rel=1e-7)  # by float mass
+    pushed = next(i for i, row in enumerate(walk) if float(row["t_s"]) > 12.5)
+    walked_m = sum(list(speeds.values())[:pushed]) * TICK_S
+    assert float(walk[pushed]["true_com_x_m"]) == pytest.approx(walked_m, abs=0.2)
+    pushed_n_s = [float(walk[-1][f"pushed_{axis}_n_s"]) for axis in "xy"]
+    assert math.hypot(*pushed_n_s) == pytest.approx(22.0, rel=1e-7)  # by float mass
 
     with can.CanutilsLogReader(tmp_path / "walk.candump.log") as log:
         frames = [frame.arbitration_id for frame in log]
@@ -256,8 +264,9 @@ def test_firmware_and_wearer_have_the_body_that_was_asked_for(tmp_path, ports):
     widths = [float(row["plan_left_y_m"]) - float(row["plan_right_y_m"]) for row in steady]
     assert sorted(widths)[len(widths) // 2] == pytest.approx(0.13, abs=0.01)
     assert all(0.8 < float(row["plan_com_z_m"]) < 0.95 for row in walk[1:])
-    # Without --push: as much as 8 N s are to 63.3 kg.
-    assert float(walk[-1]["pushed_y_n_s"]) == pytest.approx(8 * 45 / 63.3, abs=1e-6)
+    # Without --push: as much as 22 N s are to 63.3 kg.
+    pushed_n_s = [float(walk[-1][f"pushed_{axis}_n_s"]) for axis in "xy"]
+    assert math.hypot(*pushed_n_s) == pytest.approx(22 * 45 / 63.3, abs=1e-6)
 
 
 def test_demo_reports_where_it_cannot_write(tmp_path, ports, capsys):

@@ -208,7 +208,7 @@ def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":
 
 
 def events_printer(wearer: "Wearer") -> Any:
-    """An observer that prints changes of mode and level, pushes and a fall."""
+    """An observer that prints changes of mode and level, pushes, recovery steps and a fall."""
     from saddlewalk.contract import MODES
     from saddlewalk.emulation.exoskeleton import Observer
     from saddlewalk.ticks import scores_of
@@ -219,7 +219,7 @@ def events_printer(wearer: "Wearer") -> Any:
             self._due = sorted(wearer.pushes, key=lambda push: push.time_s)
             self._mode: int | None = None
             self._level = 0
-            self._fallen = False
+            self._fallen = self._recovering = False
 
         def tick(self, tick: Any, wearer: "Wearer") -> None:
             if tick.plan and tick.plan.mode != self._mode:
@@ -231,6 +231,10 @@ def events_printer(wearer: "Wearer") -> Any:
             if scores["LEVEL"] != self._level and not self._fallen:
                 self._level = int(scores["LEVEL"])
                 self._print(tick, level_words(scores))
+            shift_m = abs(wearer.recovery_shift_m)
+            if shift_m and not self._recovering:
+                self._print(tick, f"recovery step, {shift_m:.2f} m from the planned landing")
+            self._recovering = shift_m > 0
             if wearer.fallen and not self._fallen:
                 self._fallen = True
                 self._print(tick, "fell")

@@ -279,6 +279,11 @@ class Wearer:
         return None
 
     @property
+    def recovery_shift_m(self) -> complex:
+        """Of the landing, while a recovery step is taken in need; else 0."""
+        return self._recovery_shift_m if self._hurries else 0j
+
+    @property
     def xcom_m(self) -> complex:
         return self.com_m + self.velocity_m_s / self.body.natural_frequency_rad_s
 
