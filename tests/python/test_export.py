@@ -9,6 +9,7 @@ from pathlib import Path
 import lcm
 import pytest
 
+from saddlewalk import __version__
 from saddlewalk.cli import main
 from saddlewalk.logs.messages import decode
 from saddlewalk.logs.tables import columns_of, element_names
@@ -65,7 +66,7 @@ def test_the_configuration_has_a_column_for_each_field(walk, tmp_path):
     assert export(walk, "csv", tmp_path) == 0
     row = next(csv.DictReader((tmp_path / "config.csv").open()))
     assert float(row["body_height_m"]) == pytest.approx(1.79)
-    assert (row["library_version"], row["lockstep"]) == ("0.1.0", "1")
+    assert (row["library_version"], row["lockstep"]) == (__version__, "1")
     assert "name" not in row and "value" not in row and "name_x" not in row
 
 

@@ -12,7 +12,7 @@ import lcm
 import pytest
 
 from host_node import own_lcm
-from saddlewalk import paths
+from saddlewalk import __version__, paths
 from saddlewalk.cli import main
 from saddlewalk.transport import wire
 from saddlewalk.transport.bus import private_udp
@@ -151,7 +151,7 @@ def test_every_field_of_the_configuration_is_logged_and_counts(walk, tmp_path, c
     assert events[0].channel == "SADDLEWALK_CONFIG"
     fields = [name for name, _ in ffi().typeof("saddle_config_t").fields]
     assert [*config.name, "ankle"] == fields
-    assert (config.library_version, config.wire_version) == ("0.1.0", wire.WIRE_VERSION)
+    assert (config.library_version, config.wire_version) == (__version__, wire.WIRE_VERSION)
     config.value = list(config.value)
     config.value[config.name.index("body_mass_kg")] += 1
     events[0] = Changed(events[0], config.encode())

@@ -2,6 +2,6 @@
 #ifndef SADDLEWALK_VERSION_H
 #define SADDLEWALK_VERSION_H
 
-#define SADDLE_VERSION "0.1.0"
+#define SADDLE_VERSION "0.2.0"
 
 #endif
