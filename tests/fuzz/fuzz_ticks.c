@@ -122,9 +122,15 @@ static void put_foot(fuzz_bytes_t *bytes)
     input.measurement.foot[side].cop_m.y = fuzz_between(bytes, -0.4f, 0.4f);
 }
 
+static void adapt(fuzz_bytes_t *bytes)
+{
+    const saddle_config_t shape = some_config(bytes);
+    (void)saddle_adapt(&context, &shape);
+}
+
 static void act(fuzz_bytes_t *bytes)
 {
-    switch (fuzz_byte(bytes) % 10u) {
+    switch (fuzz_byte(bytes) % 11u) {
     case 0: tick(fuzz_word(bytes) >> fuzz_byte(bytes) % 32u); break;
     case 1:
         for (uint8_t ticks = fuzz_byte(bytes) % 32u; ticks > 0u; --ticks) {
@@ -142,6 +148,7 @@ static void act(fuzz_bytes_t *bytes)
     case 6: set_ages(bytes); break;
     case 7: patch(bytes); break;
     case 8: (void)saddle_join(&context, &input.command); break;
+    case 9: adapt(bytes); break;
     default: tick(80000); break;
     }
 }

@@ -49,6 +49,7 @@ static void walk(saddle_context_t *context)
     while (any_bool()) {
         const saddle_input_t input = some_input();
         const saddle_plan_t other = some_plan();
+        const saddle_config_t shape = any_config;
         (void)saddle_tick(context, &input, &output);
         (void)saddle_plan_at(context, any_uint64, &plan);
         (void)saddle_reference_after(context, &plan, any_float, &reference);
@@ -56,6 +57,7 @@ static void walk(saddle_context_t *context)
         (void)saddle_score_plan(context, &plan, &scores);
         (void)saddle_score_plan(context, &other, &scores);
         (void)saddle_join(context, &input.command);
+        (void)saddle_adapt(context, &shape);
     }
 }
 

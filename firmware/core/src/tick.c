@@ -106,20 +106,15 @@ static uint32_t take_command(saddle_context_t *context, const saddle_input_t *in
 }
 
 /* By what its sensors are late a measurement is older than its age says. */
-static const saddle_measurement_t *aged(const saddle_model_t *model,
-                                        const saddle_measurement_t *measured,
-                                        saddle_measurement_t *older)
+static void take_measurement(const saddle_model_t *model, const saddle_measurement_t *measured,
+                             saddle_measurement_t *sampled)
 {
     const uint32_t latency_us = model->body.latency_us;
-    if (latency_us == 0u) {
-        return measured;
-    }
-    saddle_copy(older, measured, sizeof *older);
-    older->com.age_us = sum_us(measured->com.age_us, latency_us);
+    saddle_copy(sampled, measured, sizeof *sampled);
+    sampled->com.age_us = sum_us(measured->com.age_us, latency_us);
     for (int side = 0; side < 2; side++) {
-        older->foot[side].age_us = sum_us(measured->foot[side].age_us, latency_us);
+        sampled->foot[side].age_us = sum_us(measured->foot[side].age_us, latency_us);
     }
-    return older;
 }
 
 /* Where the wearer is to be. */
@@ -187,18 +182,19 @@ static bool is_old(const saddle_measurement_t *sampled)
 static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_sensed_t *sensed,
                                       saddle_output_t *output)
 {
+    saddle_supervisor_t *supervisor = &context->supervisor;
+    const saddle_model_t *model = &context->model;
     saddle_intent_t intent;
-    saddle_measurement_t present;
-    saddle_sensed_t now = *sensed;
-    read_intent(&context->planner, &context->model, &output->plan, &intent);
+    read_intent(&context->planner, model, &output->plan, &intent);
     if (is_old(sensed->sampled) && intent.leads && (sensed->faults & UNMEASURED) == 0u) {
-        intent.stance_then =
-            saddle_bring_forward(&context->past, &context->model, sensed->sampled, &present);
-        now.measurement = &present;
+        saddle_measurement_t present;
+        intent.stance_then = saddle_bring_forward(&context->past, model, sensed->sampled, &present);
+        const saddle_sensed_t now = {&present, sensed->sampled, sensed->faults, sensed->dt_s};
+        output->faults |= saddle_supervisor_update(supervisor, model, &now, &intent, output);
+    } else {
+        output->faults |= saddle_supervisor_update(supervisor, model, sensed, &intent, output);
     }
-    output->faults |=
-        saddle_supervisor_update(&context->supervisor, &context->model, &now, &intent, output);
-    output->walk = context->supervisor.learning.walk;
+    output->walk = supervisor->learning.walk;
 }
 
 /* [E45] From this tick on the plan leads to where the wearer is to land. Neither the swing foot's place
@@ -234,11 +230,11 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     output->status = SADDLE_OK;
     output->limits = 0;
     const uint32_t dt_us = elapsed_us(context, input->time_us, &output->limits);
-    saddle_measurement_t older;
-    const saddle_measurement_t *sampled = aged(&context->model, &input->measurement, &older);
-    saddle_sensed_t sensed = {sampled, sampled, 0, (float)dt_us * 1.0e-6f};
+    saddle_measurement_t sampled;
+    take_measurement(&context->model, &input->measurement, &sampled);
+    saddle_sensed_t sensed = {&sampled, &sampled, 0, (float)dt_us * 1.0e-6f};
     sensed.faults =
-        saddle_measurement_check(&context->plausibility, &context->model, sampled,
+        saddle_measurement_check(&context->plausibility, &context->model, &sampled,
                                  saddle_planner_speed_m_s(&context->planner), sensed.dt_s);
     output->faults = take_command(context, input);
     const bool unstable = context->supervisor.level.level == (uint8_t)SADDLE_LEVEL_UNSTABLE;

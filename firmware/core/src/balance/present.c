@@ -27,9 +27,10 @@ typedef struct {
     saddle_vec2_t com_m, xcom_m;
 } departure_t;
 
-static uint32_t before(uint32_t place, uint32_t back)
+/* So many before the newest. */
+static uint32_t place(const saddle_past_t *past, uint32_t back)
 {
-    return (place + SADDLE_PAST_PLANS - back) % SADDLE_PAST_PLANS;
+    return (past->newest + SADDLE_PAST_PLANS - back) % SADDLE_PAST_PLANS;
 }
 
 static void keep(saddle_past_plan_t *kept, const saddle_plan_t *plan)
@@ -48,15 +49,15 @@ static void keep(saddle_past_plan_t *kept, const saddle_plan_t *plan)
 
 void saddle_remember_plan(saddle_past_t *past, const saddle_plan_t *plan, uint32_t dt_us)
 {
-    saddle_past_plan_t *last = &past->plans[before(past->newest, 1u)];
+    saddle_past_plan_t *last = &past->plans[place(past, 1u)];
     if (past->count > 1u && last->until_next_us < APART_US) {
         last->until_next_us += dt_us;
     } else {
-        past->plans[past->newest].until_next_us = dt_us;
+        past->plans[place(past, 0u)].until_next_us = dt_us;
         past->newest = (uint8_t)((past->newest + 1u) % SADDLE_PAST_PLANS);
         past->count = (uint8_t)(past->count < SADDLE_PAST_PLANS ? past->count + 1u : past->count);
     }
-    keep(&past->plans[past->newest], plan);
+    keep(&past->plans[place(past, 0u)], plan);
 }
 
 static saddle_vec2_t between_m(saddle_vec2_t later_m, saddle_vec2_t earlier_m, float share)
@@ -74,14 +75,14 @@ static saddle_vec2_t origin_m(const saddle_past_plan_t *plan, const saddle_past_
 /* So long ago, or as long as is remembered. */
 static void moment_at(const saddle_past_t *past, uint32_t age_us, moment_t *moment)
 {
-    const saddle_past_plan_t *newest = &past->plans[past->newest];
+    const saddle_past_plan_t *newest = &past->plans[place(past, 0u)];
     const saddle_past_plan_t *later = newest;
     const saddle_past_plan_t *earlier = newest;
     uint32_t left_us = age_us;
     float share = 0.0f;
     for (uint32_t back = 1; back < past->count && left_us > 0u; back++) {
         later = earlier;
-        earlier = &past->plans[before(past->newest, back)];
+        earlier = &past->plans[place(past, back)];
         const uint32_t apart_us = earlier->until_next_us;
         share = left_us < apart_us ? (float)left_us / (float)apart_us : 1.0f;
         left_us = left_us < apart_us ? 0u : left_us - apart_us;
@@ -171,25 +172,20 @@ saddle_side_t saddle_bring_forward(const saddle_past_t *past, const saddle_model
                                    saddle_measurement_t *present)
 {
     const float w = model->body.natural_frequency_rad_s;
-    const saddle_past_plan_t *now = &past->plans[past->newest];
-    part_t com, other[2];
-    const part_t *foot[2];
+    const saddle_past_plan_t *now = &past->plans[place(past, 0u)];
+    part_t com, foot[2];
     part_of_age(past, model, measured->com.age_us, measured, &com);
     for (int side = 0; side < 2; side++) {
-        foot[side] = &com;
-        if (measured->foot[side].age_us != measured->com.age_us) {
-            foot[side] = &other[side];
-            part_of_age(past, model, measured->foot[side].age_us, measured, &other[side]);
-        }
+        part_of_age(past, model, measured->foot[side].age_us, measured, &foot[side]);
     }
     const saddle_side_t stance = (saddle_side_t)com.then.plan->support;
-    const departure_t departure = departure_from(&com.then, &foot[stance]->then, measured, w);
+    const departure_t departure = departure_from(&com.then, &foot[stance].then, measured, w);
     const departure_t departed = grown(&departure, &com.growth);
     const saddle_vec2_t ahead_m = saddle_vec2_add(saddle_vec2_sub(now->xcom_m, now->com_m),
                                                   saddle_vec2_sub(departed.xcom_m, departed.com_m));
     saddle_copy(present, measured, sizeof *present);
     present->com.velocity_m_s = saddle_vec2_scale(w, ahead_m);
-    bring_foot(now, foot[SADDLE_LEFT], &departure, SADDLE_LEFT, present);
-    bring_foot(now, foot[SADDLE_RIGHT], &departure, SADDLE_RIGHT, present);
+    bring_foot(now, &foot[SADDLE_LEFT], &departure, SADDLE_LEFT, present);
+    bring_foot(now, &foot[SADDLE_RIGHT], &departure, SADDLE_RIGHT, present);
     return stance;
 }
