@@ -28,7 +28,7 @@ typedef struct {
 } departure_t;
 
 /* So many before the newest. */
-static uint32_t place(const saddle_past_t *past, uint32_t back)
+static uint32_t slot(const saddle_past_t *past, uint32_t back)
 {
     return (past->newest + SADDLE_PAST_PLANS - back) % SADDLE_PAST_PLANS;
 }
@@ -49,15 +49,15 @@ static void keep(saddle_past_plan_t *kept, const saddle_plan_t *plan)
 
 void saddle_remember_plan(saddle_past_t *past, const saddle_plan_t *plan, uint32_t dt_us)
 {
-    saddle_past_plan_t *last = &past->plans[place(past, 1u)];
+    saddle_past_plan_t *last = &past->plans[slot(past, 1u)];
     if (past->count > 1u && last->until_next_us < APART_US) {
         last->until_next_us += dt_us;
     } else {
-        past->plans[place(past, 0u)].until_next_us = dt_us;
+        past->plans[slot(past, 0u)].until_next_us = dt_us;
         past->newest = (uint8_t)((past->newest + 1u) % SADDLE_PAST_PLANS);
         past->count = (uint8_t)(past->count < SADDLE_PAST_PLANS ? past->count + 1u : past->count);
     }
-    keep(&past->plans[place(past, 0u)], plan);
+    keep(&past->plans[slot(past, 0u)], plan);
 }
 
 static saddle_vec2_t between_m(saddle_vec2_t later_m, saddle_vec2_t earlier_m, float share)
@@ -75,14 +75,14 @@ static saddle_vec2_t origin_m(const saddle_past_plan_t *plan, const saddle_past_
 /* So long ago, or as long as is remembered. */
 static void moment_at(const saddle_past_t *past, uint32_t age_us, moment_t *moment)
 {
-    const saddle_past_plan_t *newest = &past->plans[place(past, 0u)];
+    const saddle_past_plan_t *newest = &past->plans[slot(past, 0u)];
     const saddle_past_plan_t *later = newest;
     const saddle_past_plan_t *earlier = newest;
     uint32_t left_us = age_us;
     float share = 0.0f;
     for (uint32_t back = 1; back < past->count && left_us > 0u; back++) {
         later = earlier;
-        earlier = &past->plans[place(past, back)];
+        earlier = &past->plans[slot(past, back)];
         const uint32_t apart_us = earlier->until_next_us;
         share = left_us < apart_us ? (float)left_us / (float)apart_us : 1.0f;
         left_us = left_us < apart_us ? 0u : left_us - apart_us;
@@ -172,7 +172,7 @@ saddle_side_t saddle_bring_forward(const saddle_past_t *past, const saddle_model
                                    saddle_measurement_t *present)
 {
     const float w = model->body.natural_frequency_rad_s;
-    const saddle_past_plan_t *now = &past->plans[place(past, 0u)];
+    const saddle_past_plan_t *now = &past->plans[slot(past, 0u)];
     part_t com, foot[2];
     part_of_age(past, model, measured->com.age_us, measured, &com);
     for (int side = 0; side < 2; side++) {
