@@ -42,6 +42,6 @@ def walk(tmp_path_factory) -> Path:
 
     folder = tmp_path_factory.mktemp("walk")
     options = ["--can", private_udp(), "--lcm", own_lcm(), "--clock", "lockstep"]
-    options += ["--out", str(folder), "--speed", "1.2", "--duration", "13"]
+    options += ["--out", str(folder), "--speed", "1.2", "--duration", "13", "--push", "8@12:90"]
     assert main(["demo", *options]) == 0
     return folder
