@@ -8,9 +8,10 @@ fields keep the population's value, its median in 58 natural trials of adults.
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from saddlewalk.config import ANKLES
-from saddlewalk.gait.fit import Fit, least_squares, r_squared
+from saddlewalk.gait.fit import Fit, r_squared
 from saddlewalk.gait.planned_time import TimedStep
 
 LATERAL_DELAY_RAD = 0.18
@@ -192,9 +193,9 @@ def swing(steps: Sequence[TimedStep]) -> list[Fit]:
         beside_usual = (coefficients - usual) / SWING_SPREAD
         return np.concatenate([weight * left_over_m(coefficients), beside_usual])
 
-    found = least_squares(unlikely, usual, SWING_BOUNDS)
-    fields = dict(zip(SWING, map(float, found), strict=True))
-    rest_m = left_over_m(found)
+    found = least_squares(unlikely, usual, bounds=SWING_BOUNDS)
+    fields = dict(zip(SWING, map(float, found.x), strict=True))
+    rest_m = left_over_m(found.x)
     fitted = Fit("swing", fields, len(steps), r_squared(rest_m, x_m))
     line = Fit("swing", note=_paper("line"))
     if np.linalg.norm(x_m - line_m) < np.linalg.norm(rest_m):
