@@ -6,10 +6,9 @@ They come from the package fmpy on PyPI; their licence, in each of them, is BSD'
 """
 
 import sys
-import zipfile
 from pathlib import Path
 
-from pinned_files import downloaded, write_checked
+from pinned_files import write_from_wheel
 
 PACKAGE = "fmpy==0.3.32"
 FOLDER = "fmpy/c-code"
@@ -20,11 +19,5 @@ SHA256 = {
 }
 
 
-def main() -> None:
-    with downloaded(PACKAGE) as archive, zipfile.ZipFile(archive) as wheel:
-        files = {name: wheel.read(f"{FOLDER}/{name}") for name in SHA256}
-    write_checked(Path(sys.argv[1]), files, SHA256)
-
-
 if __name__ == "__main__":
-    main()
+    write_from_wheel(Path(sys.argv[1]), PACKAGE, FOLDER, SHA256)

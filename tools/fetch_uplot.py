@@ -7,10 +7,9 @@ else is used.
 """
 
 import sys
-import zipfile
 from pathlib import Path
 
-from pinned_files import downloaded, write_checked
+from pinned_files import write_from_wheel
 
 PACKAGE = "uplot-python==1.1.1"
 FOLDER = "uplot/static"
@@ -20,11 +19,5 @@ SHA256 = {
 }
 
 
-def main() -> None:
-    with downloaded(PACKAGE) as wheel, zipfile.ZipFile(wheel) as archive:
-        files = {name: archive.read(f"{FOLDER}/{name}") for name in SHA256}
-    write_checked(Path(sys.argv[1]), files, SHA256)
-
-
 if __name__ == "__main__":
-    main()
+    write_from_wheel(Path(sys.argv[1]), PACKAGE, FOLDER, SHA256)

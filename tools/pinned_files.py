@@ -4,6 +4,7 @@ import hashlib
 import subprocess
 import sys
 import tempfile
+import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +18,13 @@ def downloaded(package: str, *options: str) -> Iterator[Path]:
         subprocess.run([*pip, "--no-deps", *options, "-d", folder, package], check=True)
         (archive,) = Path(folder).iterdir()
         yield archive
+
+
+def write_from_wheel(out: Path, package: str, folder: str, sha256: Mapping[str, str]) -> None:
+    """Files of a folder of a pinned package's wheel, checked."""
+    with downloaded(package) as archive, zipfile.ZipFile(archive) as wheel:
+        files = {name: wheel.read(f"{folder}/{name}") for name in sha256}
+    write_checked(out, files, sha256)
 
 
 def write_checked(out: Path, files: Mapping[str, bytes], sha256: Mapping[str, str]) -> None:

@@ -1,5 +1,6 @@
 #include "config_file.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -26,8 +27,11 @@ static bool print_fields(FILE *file, const saddle_config_t *config)
 bool saddle_config_file_write(const char *path, const saddle_config_t *config)
 {
     char beside[PATH_MAX_LENGTH];
-    const int length = snprintf(beside, sizeof beside, "%s.new", path);
-    FILE *file = length < (int)sizeof beside ? fopen(beside, "w") : NULL;
+    if (snprintf(beside, sizeof beside, "%s.new", path) >= (int)sizeof beside) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    FILE *file = fopen(beside, "w");
     if (file == NULL) {
         return false;
     }

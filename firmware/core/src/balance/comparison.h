@@ -36,8 +36,9 @@ void saddle_compare_nothing(saddle_verdict_t *verdict);
 
 /** Compare with what is planned; without a command, with the walk of the last step or standing. Feet
  *  and CoM are known and the BoS is defined. Sets verdict->compared and writes all that goes with it,
- *  or nothing if there is no walk to compare with. Returns whether the wearer is seen to do as planned: to
- *  make the planned step on its stance foot, or is to stand; sets *placement for one whose landing may be moved. */
+ *  or nothing if there is no walk to compare with. Returns whether the wearer is seen to do as planned,
+ *  making the planned step on its stance foot, or is to stand; sets *placement for one whose landing may
+ *  be moved. */
 bool saddle_compare(const saddle_model_t *model, const saddle_wearer_t *wearer,
                     const saddle_intent_t *intent, saddle_verdict_t *verdict,
                     saddle_placement_t *placement);
