@@ -40,8 +40,7 @@ typedef struct {
 
 /** Each field belongs to the functions below, but for `config`. */
 typedef struct {
-    saddle_config_t
-        config; /**< as learned so far: what to store, and to begin with the next time */
+    saddle_config_t config; /**< as learned so far: store it, and begin with it the next time */
     saddle_learning_config_t learning;
     saddle_config_t start;
     bool changed;       /**< since the plan took it over */

@@ -83,8 +83,8 @@ def add_parser(subparsers: Any) -> None:
         type=number_in(0.0, 0.2, "s"),
         default=0.0,
         metavar="S",
-        help="of the emulated wearer's measurements; what sensor_latency_s does not say of it "
-        "is their age (default 0)",
+        help="how late the emulated wearer's measurements arrive: sensor_latency_s of it, and the "
+        "rest as their age (default 0)",
     )
     add_campaign_options(parser)
     add_plant_options(parser)
