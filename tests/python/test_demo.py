@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main
+from saddlewalk.commands.demo import PUSH_TIMES_S
 from saddlewalk.config import configuration, load_config
 from saddlewalk.contract import REASONS, TICK_S
 from saddlewalk.emulation.wearer import Push
@@ -82,14 +83,16 @@ def test_what_cannot_be_learned_is_rejected(tmp_path, ports, capsys):
 def test_demo_records_a_sound_walk_that_reads_back(tmp_path, ports, capsys):
     assert demo(tmp_path, ports) == 0
     shown = capsys.readouterr().out
-    assert (
-        "did not fall" in shown and "BAD" not in shown and "push of 22 N s to 180 degrees" in shown
-    )
-    assert re.search(
-        r"1[23]\.\d\d s  recovery step, 0\.[1-9]\d m from the planned landing\n", shown
-    )
+    assert "did not fall" in shown and "BAD" not in shown
+    assert shown.count("s  push of 28 N s backward\n") == 2
+    for push_s in PUSH_TIMES_S:
+        step = rf"{int(push_s)}\.\d\d s  recovery step, 0\.[1-9]\d m from the planned landing\n"
+        assert re.search(step, shown)
+    assert re.search(r"1[0-4]\.\d\d s  caution: the body departs backward of the feet\n", shown)
     assert "stands at the end" in shown
-    assert f" view {tmp_path}/walk.lcmlog    # this walk in the browser" in shown
+    seen, *following = shown.splitlines()[-4:]
+    assert re.fullmatch("seen: 2 pushes, lowest level caution, [2-4] recovery steps, no fall", seen)
+    assert f" view {tmp_path}/walk.lcmlog  # in the browser" in following[0]
     assert f"{round(22 / TICK_S)} ticks recomputed from the log: the same bits\n" in shown
     assert_levels_printed(shown, [row["level"] for row in rows(tmp_path)])
     assert {path.name for path in tmp_path.iterdir()} == FILES
@@ -108,11 +111,11 @@ def test_demo_records_a_sound_walk_that_reads_back(tmp_path, ports, capsys):
     assert len(walk) == round(22 / TICK_S) == len(speeds)
     at = [speeds[time_s] for time_s in (0.96, 6.0, 10.0, 21.92)]
     assert at == pytest.approx([0.0, 0.8, 1.2, 0.0], abs=1e-4)  # the wire's resolution
-    pushed = next(i for i, row in enumerate(walk) if float(row["t_s"]) > 12.5)
+    pushed = next(i for i, row in enumerate(walk) if float(row["t_s"]) > PUSH_TIMES_S[0])
     walked_m = sum(list(speeds.values())[:pushed]) * TICK_S
     assert float(walk[pushed]["true_com_x_m"]) == pytest.approx(walked_m, abs=0.2)
     pushed_n_s = [float(walk[-1][f"pushed_{axis}_n_s"]) for axis in "xy"]
-    assert math.hypot(*pushed_n_s) == pytest.approx(22.0, rel=1e-7)  # by float mass
+    assert math.hypot(*pushed_n_s) == pytest.approx(2 * 28.0, rel=1e-7)  # by float mass
 
     with can.CanutilsLogReader(tmp_path / "walk.candump.log") as log:
         frames = [frame.arbitration_id for frame in log]
@@ -256,17 +259,17 @@ def test_demo_rejects_a_bus_with_another_walk(tmp_path, ports, capsys):
 def test_firmware_and_wearer_have_the_body_that_was_asked_for(tmp_path, ports):
     (tmp_path / "person.toml").write_text("pendulum_ratio = 0.6\nstep_width_fast_m = 0.13\n")
     body = ["--height", "1.5", "--mass", "45", "--config", str(tmp_path / "person.toml")]
-    assert demo(tmp_path, ports, "--speed", "1.2", "--duration", "13", *body) == 0
+    assert demo(tmp_path, ports, "--duration", "13", *body) == 0
     walk = rows(tmp_path)
     standing_m = math.sqrt((0.6 * 1.5) ** 2 - 0.11**2)
     assert float(walk[0]["true_com_z_m"]) == pytest.approx(standing_m, abs=1e-4)
-    steady = [row for row in walk if 6 < float(row["t_s"]) < 11]
+    steady = [row for row in walk if 6 < float(row["t_s"]) < PUSH_TIMES_S[0]]
     widths = [float(row["plan_left_y_m"]) - float(row["plan_right_y_m"]) for row in steady]
     assert sorted(widths)[len(widths) // 2] == pytest.approx(0.13, abs=0.01)
     assert all(0.8 < float(row["plan_com_z_m"]) < 0.95 for row in walk[1:])
-    # Without --push: as much as 22 N s are to 63.3 kg.
+    # Without --push: as much as 28 N s are to 63.3 kg.
     pushed_n_s = [float(walk[-1][f"pushed_{axis}_n_s"]) for axis in "xy"]
-    assert math.hypot(*pushed_n_s) == pytest.approx(22 * 45 / 63.3, abs=1e-6)
+    assert math.hypot(*pushed_n_s) == pytest.approx(28 * 45 / 63.3, abs=1e-6)
 
 
 def test_demo_reports_where_it_cannot_write(tmp_path, ports, capsys):

@@ -260,7 +260,7 @@ def test_a_landmark_of_zeros_is_missing(monkeypatch, tmp_path):
     assert np.isfinite(recording.heel_m[1]).all()
 
 
-def test_without_gaitkit_the_remedy_is_named(monkeypatch, capsys):
+def test_without_gaitkit_the_remedy_is_named(tmp_path, monkeypatch, capsys):
     from importlib.metadata import PackageNotFoundError
 
     from saddlewalk.gait import samples
@@ -269,10 +269,15 @@ def test_without_gaitkit_the_remedy_is_named(monkeypatch, capsys):
         raise PackageNotFoundError(name)
 
     monkeypatch.setattr(samples, "distribution", absent)
-    assert main(["replay", "--sample", "healthy"]) == 2
-    printed = capsys.readouterr().err
-    assert printed.count("\n") == 1
-    assert "make samples" in printed
+    for installed, remedy in (
+        (False, "run `make samples`"),
+        (True, "run `pip install 'saddlewalk[samples]'`"),
+    ):
+        monkeypatch.setattr(paths, "SHIPPED", tmp_path if installed else tmp_path / "none")
+        assert main(["replay", "--sample", "healthy"]) == 2
+        printed = capsys.readouterr().err
+        assert printed.count("\n") == 1
+        assert remedy in printed
 
 
 if TRIALS.is_dir():

@@ -220,6 +220,7 @@ def events_printer(wearer: "Wearer") -> Any:
             self._mode: int | None = None
             self._level = 0
             self._fallen = self._recovering = False
+            self.recovery_steps = 0
 
         def tick(self, tick: Any, wearer: "Wearer") -> None:
             if tick.plan and tick.plan.mode != self._mode:
@@ -233,6 +234,7 @@ def events_printer(wearer: "Wearer") -> Any:
                 self._print(tick, level_words(scores))
             shift_m = abs(wearer.recovery_shift_m)
             if shift_m and not self._recovering:
+                self.recovery_steps += 1
                 self._print(tick, f"recovery step, {shift_m:.2f} m from the planned landing")
             self._recovering = shift_m > 0
             if wearer.fallen and not self._fallen:
@@ -246,7 +248,9 @@ def events_printer(wearer: "Wearer") -> Any:
 
 
 def push_words(push: "Push") -> str:
-    return f"push of {push.impulse_n_s:.3g} N s to {push.direction_deg:g} degrees"
+    direction = {0.0: "forward", 90.0: "to the left", 180.0: "backward", 270.0: "to the right"}
+    words = direction.get(push.direction_deg % 360, f"to {push.direction_deg:g} degrees")
+    return f"push of {push.impulse_n_s:.3g} N s {words}"
 
 
 def summary(wearer: "Wearer", exoskeleton: Any) -> str:

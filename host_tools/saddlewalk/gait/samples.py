@@ -17,8 +17,7 @@ import numpy as np
 from saddlewalk.errors import UserError
 from saddlewalk.gait.motion_capture import load_walk, read_markers
 from saddlewalk.gait.recording import Recording
-
-INSTALL = "make samples"
+from saddlewalk.paths import in_checkout, install_command
 
 
 def recorded_walks(
@@ -53,7 +52,8 @@ def load_sample(name: str) -> Recording:
         path = Path(str(package.locate_file(f"gaitkit/data/{sample.file}")))
         text = path.read_text(encoding="utf-8")
     except (PackageNotFoundError, FileNotFoundError) as error:
-        raise UserError(f"--sample {name} needs gaitkit 1.5.0: run `{INSTALL}`") from error
+        how = "run `make samples`" if in_checkout() else install_command("samples")
+        raise UserError(f"--sample {name} needs gaitkit 1.5.0: {how}") from error
     trial = json.loads(text)
     frames = trial["angle_frames"]
     point = {key: _points_m(frames, key, sample) for key in frames[0]["landmark_positions"]}
