@@ -60,7 +60,6 @@ LINE_S = 2.0
 LISTEN_S = 0.25
 
 HOST, EMULATED = "host", "qemu-m4"
-SEVERITY = ("unknown", "stable", "caution", "unstable")
 NEW_KEY = ""  # --command-key without a file
 
 
@@ -399,7 +398,9 @@ def _finish(
 
 def _seen(wearer: "Wearer", recorder: "Recorder", recovery_steps: int) -> str:
     """The walk in a line."""
-    worst = max(recorder.levels, key=SEVERITY.index, default="unknown")
+    from saddlewalk.contract import LEVELS
+
+    worst = max(recorder.levels, key=LEVELS.index, default=LEVELS[0])
     pushes, steps = (
         _count(len(wearer.pushes), "push", "es"),
         _count(recovery_steps, "recovery step", "s"),
