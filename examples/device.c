@@ -74,7 +74,7 @@ int main(void)
         return 1; /* the drives were never powered */
     }
 
-    saddle_input_t input = {.command = {SADDLE_COMMAND_STAND, 0.0f, 0.0f}};
+    saddle_input_t input = {.command = {SADDLE_COMMAND_STAND, 0.0f, 0.0f, 0.0f}};
     uint64_t com_us = 0, foot_us[2] = {0, 0};
     uint8_t shown = UINT8_MAX;
     input.measurement = saddle_no_measurement();

@@ -4,8 +4,9 @@
 int main(void)
 {
     static saddle_context_t walker;
-    const saddle_config_t config = saddle_config_default(1.79f, 63.3f);     /* height m, mass kg */
-    saddle_input_t input = {.command = {SADDLE_COMMAND_WALK, 1.2f, 0.17f}}; /* m/s, rad */
+    const saddle_config_t config = saddle_config_default(1.79f, 63.3f); /* height m, mass kg */
+    saddle_input_t input = {
+        .command = {SADDLE_COMMAND_WALK, 1.2f, 0.17f, 0.0f}}; /* m/s, rad, rad/s */
     input.measurement = saddle_no_measurement(); /* your sensors; output.verdict needs them */
     if (saddle_init(&walker, &config) != SADDLE_OK) {
         return 1; /* the configuration, or a compiler flag that breaks the arithmetic */

@@ -16,8 +16,7 @@ from cantools.database.can import Message, Signal
 
 CRC_POLYNOMIAL = 0x1D
 FRAME_LENGTH = 8
-NUMBER_BITS = 16
-NOT_AVAILABLE = -32768
+NUMBER_BITS = (8, 16)
 
 HEAD = """\
 /* Written by tools/wire_signals.py from saddlewalk.dbc. */
@@ -35,7 +34,7 @@ typedef struct {
 
 
 def complaint(signal: Signal) -> str | None:
-    """What wire.c cannot pack: it knows scaled numbers of 16 bits, and counts and codes."""
+    """What wire.c cannot pack: it knows scaled numbers of 16 and 8 bits, and counts and codes."""
     if signal.byte_order != "little_endian" or signal.is_float or signal.is_multiplexer:
         return "must be a little-endian integer"
     if signal.offset != 0:
@@ -44,10 +43,11 @@ def complaint(signal: Signal) -> str | None:
         return f"has {signal.length} bits: 32 at most"
     if not signal.is_signed:
         return None if signal.scale == 1 else f"is unsigned with scale {signal.scale}: must be 1"
-    if signal.length != NUMBER_BITS:
-        return f"is signed with {signal.length} bits: must be {NUMBER_BITS}"
-    if NOT_AVAILABLE not in (signal.choices or {}):
-        return f"is signed without a word for {NOT_AVAILABLE}, not available"
+    if signal.length not in NUMBER_BITS:
+        return f"is signed with {signal.length} bits: must be 16 or 8"
+    not_available = -(1 << (signal.length - 1))
+    if not_available not in (signal.choices or {}):
+        return f"is signed without a word for {not_available}, not available"
     return None
 
 

@@ -48,7 +48,7 @@ void saddle_bench_walk(saddle_bench_walk_t *walk, int number)
 {
     static saddle_output_t planned;
     const saddle_config_t config = saddle_config_default(1.79f, 63.3f);
-    const saddle_command_t go = {SADDLE_COMMAND_WALK, SPEEDS_M_S[number], HEEL_STRIKE_RAD};
+    const saddle_command_t go = {SADDLE_COMMAND_WALK, SPEEDS_M_S[number], HEEL_STRIKE_RAD, 0.0f};
     saddle_context_t *model = &walk->context; /* used to make the inputs, then initialised again */
     walk->scores_plan = number == SADDLE_BENCH_PLAN;
     (void)saddle_init(model, &config);

@@ -7,7 +7,9 @@
 #include <saddlewalk_input_t.h>
 #include <saddlewalk_plan_t.h>
 #include <saddlewalk_scores_t.h>
+#include <saddlewalk_turn_t.h>
 #include <saddlewalk_verdict_t.h>
+#include <saddlewalk_way_t.h>
 #include <string.h>
 
 #define NM_PER_M 1e9
@@ -63,6 +65,18 @@ static saddlewalk_plan_t plan_message(const saddle_plan_t *plan, int64_t utime_u
     set2(message.reference_xcom_m, plan->reference.xcom_m);
     set2(message.reference_cop_m, plan->reference.cop_m);
     return message;
+}
+
+static saddlewalk_way_t way_message(const saddle_plan_t *plan, int64_t utime_us)
+{
+    return (saddlewalk_way_t){
+        .utime_us = utime_us,
+        .origin_y_m = (double)plan->origin_y_nm / NM_PER_M,
+        .heading_rad = plan->heading_rad,
+        .curvature_1_m = {plan->curvature_1_m[0], plan->curvature_1_m[1]},
+        .foot_yaw_rad = {plan->foot_yaw_rad[SADDLE_LEFT], plan->foot_yaw_rad[SADDLE_RIGHT]},
+        .pelvis_yaw_rad = plan->pelvis_yaw_rad,
+    };
 }
 
 /** The number if it is known, else NaN. */
@@ -169,7 +183,7 @@ const char *saddle_lcm_channel(saddle_lcm_output_t part)
     static const char *const names[SADDLE_LCM_OUTPUTS] = {
         [SADDLE_LCM_PLAN] = "SADDLEWALK_PLAN",       [SADDLE_LCM_SCORES] = "SADDLEWALK_SCORES",
         [SADDLE_LCM_VERDICT] = "SADDLEWALK_VERDICT", [SADDLE_LCM_BALANCE] = "SADDLEWALK_BALANCE",
-        [SADDLE_LCM_BOS] = "SADDLEWALK_BOS",
+        [SADDLE_LCM_BOS] = "SADDLEWALK_BOS",         [SADDLE_LCM_WAY] = "SADDLEWALK_WAY",
     };
     return names[part];
 }
@@ -195,6 +209,10 @@ int saddle_lcm_encode_output(saddle_lcm_output_t part, const saddle_output_t *ou
         const saddlewalk_balance_t balance =
             balance_message(&output->verdict, &output->walk, utime_us);
         return saddlewalk_balance_t_encode(bytes, 0, room, &balance);
+    }
+    if (part == SADDLE_LCM_WAY) {
+        const saddlewalk_way_t way = way_message(&output->plan, utime_us);
+        return saddlewalk_way_t_encode(bytes, 0, room, &way);
     }
     const saddlewalk_bos_t bos = bos_message(&output->scores.bos, utime_us);
     return saddlewalk_bos_t_encode(bytes, 0, room, &bos);
@@ -227,6 +245,23 @@ int saddle_lcm_encode_input(const saddle_input_t *input, int32_t tick,
     set2(message.left_m, measured->foot[SADDLE_LEFT].cop_m);
     set2(message.right_m, measured->foot[SADDLE_RIGHT].cop_m);
     return saddlewalk_input_t_encode(bytes, 0, SADDLE_LCM_MESSAGE_MAX, &message);
+}
+
+int saddle_lcm_encode_turn(const saddle_input_t *input, uint8_t bytes[SADDLE_LCM_MESSAGE_MAX])
+{
+    const saddlewalk_turn_t message = {.utime_us = (int64_t)input->time_us,
+                                       .turn_rate_rad_s = input->command.turn_rate_rad_s};
+    return saddlewalk_turn_t_encode(bytes, 0, SADDLE_LCM_MESSAGE_MAX, &message);
+}
+
+bool saddle_lcm_decode_turn(const uint8_t *bytes, int size, saddle_input_t *input)
+{
+    saddlewalk_turn_t message;
+    if (saddlewalk_turn_t_decode(bytes, 0, size, &message) != size) {
+        return false;
+    }
+    input->command.turn_rate_rad_s = message.turn_rate_rad_s;
+    return true;
 }
 
 static saddle_vec2_t vec2(const float from[2])

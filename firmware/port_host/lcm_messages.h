@@ -20,13 +20,14 @@ typedef enum {
     SADDLE_LCM_VERDICT = 2,
     SADDLE_LCM_BALANCE = 3,
     SADDLE_LCM_BOS = 4,
+    SADDLE_LCM_WAY = 5,
     SADDLE_LCM_OUTPUTS
 } saddle_lcm_output_t;
 
 /** The channel of a message of the output, such as SADDLEWALK_PLAN. */
 const char *saddle_lcm_channel(saddle_lcm_output_t part);
 
-/** plan_t, scores_t, verdict_t, balance_t or bos_t. Returns the size in bytes. */
+/** plan_t, scores_t, verdict_t, balance_t, bos_t or way_t. Returns the size in bytes. */
 int saddle_lcm_encode_output(saddle_lcm_output_t part, const saddle_output_t *output,
                              int64_t utime_us, uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
 
@@ -37,6 +38,13 @@ int saddle_lcm_encode_input(const saddle_input_t *input, int32_t tick,
 /** Decode an input_t, bit for bit. False, and nothing is written, unless the bytes are exactly one.
  *  */
 bool saddle_lcm_decode_input(const uint8_t *bytes, int size, saddle_input_t *input, int32_t *tick);
+
+/** turn_t, what input_t lacks. Returns the size in bytes. */
+int saddle_lcm_encode_turn(const saddle_input_t *input, uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
+
+/** Add a turn_t to the decoded input_t of its tick. False, and nothing is written, unless the bytes are
+ *  exactly one. */
+bool saddle_lcm_decode_turn(const uint8_t *bytes, int size, saddle_input_t *input);
 
 /** config_t. Returns the size in bytes. */
 int saddle_lcm_encode_config(const saddle_config_t *config, uint64_t time_us, bool lockstep,

@@ -110,7 +110,7 @@ static bool begin(void)
 {
     const saddle_config_t config = config_of_inputs();
     input = (saddle_input_t){
-        .command = {SADDLE_COMMAND_WALK, inputs[SPEED], inputs[HEEL_STRIKE] * RAD_A_DEGREE},
+        .command = {SADDLE_COMMAND_WALK, inputs[SPEED], inputs[HEEL_STRIKE] * RAD_A_DEGREE, 0.0f},
         .measurement = saddle_no_measurement(),
     };
     return saddle_init(&context, &config) == SADDLE_OK &&

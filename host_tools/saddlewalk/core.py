@@ -53,6 +53,7 @@ class Command:
 
     speed_m_s: float | None = None
     heel_strike_rad: float = 0.0
+    turn_rate_rad_s: float = 0.0  # of the way, to the left
 
 
 class Core:
@@ -110,6 +111,7 @@ class Core:
         target.mode = library().SADDLE_COMMAND_WALK if walk else library().SADDLE_COMMAND_STAND
         target.speed_m_s = command.speed_m_s if walk else 0.0
         target.heel_strike_rad = command.heel_strike_rad
+        target.turn_rate_rad_s = command.turn_rate_rad_s
 
 
 def _fill(target: Any, measurement: Measurement) -> None:

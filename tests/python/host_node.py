@@ -18,7 +18,7 @@ from saddlewalk.transport.wire import TIMES, Receiver, Sender
 WAIT_S = 5.0  # for what must come
 SILENCE_S = 0.1  # for what must not
 TICK_S = 0.08
-MESSAGES_PER_TICK = 29
+MESSAGES_PER_TICK = 31
 # For tests that command once and are about something else.
 COMMAND_HOLDS = "--set=command_max_age_s=3600"
 # A walk that comes to its speed within half a second.

@@ -46,7 +46,7 @@ def test_a_missing_product_is_named_with_the_command_that_makes_it(monkeypatch, 
         ("VERSION : 48|8@1+ (1,0)", "VERSION : 48|8@1+ (2,0)", "unsigned with scale 2: must be 1"),
         ("COUNTER : 8|4@1+", "COUNTER : 8|3@1+", "COMMAND_CODE must begin with CRC, 0|8, and COU"),
         ('VAL_ 256 SPEED -32768 "NOT_AVAILABLE" ;', "", "signed without a word for -32768"),
-        ("BO_ 256 COMMAND: 8", "BO_ 256 COMMAND: 7", "COMMAND must be a classic frame of 8 bytes"),
+        ("BO_ 273 MEASURED_LEFT: 8", "BO_ 273 MEASURED_LEFT: 7", "must be a classic frame of 8 b"),
     ],
 )
 def test_a_dbc_that_the_wire_cannot_pack_fails_the_build(now, then, message, tmp_path):

@@ -125,7 +125,8 @@ def test_the_dbc_reports_what_is_not_available():
         for signal in message.signals:
             choices = {number: str(word) for number, word in (signal.choices or {}).items()}
             if signal.is_signed:
-                assert choices == {-32768: "NOT_AVAILABLE"}, signal.name
+                lowest = -(1 << (signal.length - 1))
+                assert choices == {lowest: "NOT_AVAILABLE"}, signal.name
             else:
                 assert choices == TABLES.get((message.name, signal.name), {}), signal.name
 

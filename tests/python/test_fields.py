@@ -33,6 +33,10 @@ FIELDS = """
     plan.stride_count           -                               plan.stride_count
     plan.theta_rad              PLAN_STEP.THETA                 plan.theta_rad
     plan.origin_x_nm            -                               plan.origin_x_m
+    plan.origin_y_nm            -                               way.origin_y_m
+    plan.heading_rad            PLAN_WAY.HEADING                way.heading_rad
+    plan.curvature_1_m[0]       PLAN_WAY.CURVATURE_BEHIND       way.curvature_1_m[0]
+    plan.curvature_1_m[1]       PLAN_WAY.CURVATURE_AHEAD        way.curvature_1_m[1]
     plan.speed_m_s              PLAN_ANKLE.SPEED                plan.speed_m_s
     plan.step_length_m          PLAN_STEP.STEP_LENGTH           plan.step_length_m
     plan.step_width_m           PLAN_LAST_STEP.WIDTH                         plan.step_width_m
@@ -50,6 +54,9 @@ FIELDS = """
     plan.foot_m[1].z            PLAN_RIGHT.Z                    plan.right_m[2]
     plan.foot_pitch_rad[0]      PLAN_PITCH.LEFT                 plan.foot_pitch_rad[0]
     plan.foot_pitch_rad[1]      PLAN_PITCH.RIGHT                plan.foot_pitch_rad[1]
+    plan.foot_yaw_rad[0]        PLAN_YAW.LEFT                   way.foot_yaw_rad[0]
+    plan.foot_yaw_rad[1]        PLAN_YAW.RIGHT                  way.foot_yaw_rad[1]
+    plan.pelvis_yaw_rad         PLAN_YAW.PELVIS                 way.pelvis_yaw_rad
     plan.swing_velocity_m_s.x   PLAN_SWING.VX                   plan.swing_velocity_m_s[0]
     plan.swing_velocity_m_s.y   PLAN_SWING.VY                   plan.swing_velocity_m_s[1]
     plan.swing_velocity_m_s.z   PLAN_SWING.VZ                   plan.swing_velocity_m_s[2]
@@ -122,7 +129,7 @@ DATABASE = cantools.database.load_file(paths.CHECKOUT / "firmware/wire/saddlewal
 ON_HEALTH = {"status", "limits", "faults"}
 # Not on CAN: they do not fit in 16 bits, or follow from other signals.
 ON_LCM_ALONE = {
-    *("plan.stride_count", "plan.origin_x_nm"),
+    *("plan.stride_count", "plan.origin_x_nm", "plan.origin_y_nm"),
     *("scores.xcom_m.x", "scores.xcom_m.y"),
 }
 # Drawn as a polygon by LCM, and not on CAN.

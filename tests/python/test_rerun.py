@@ -19,8 +19,8 @@ from saddlewalk.transport.bus import private_udp
 from saddlewalk.transport.lcm_log import LcmLog
 
 TICKS = 163  # of 13 s
-OUTPUTS = TICKS * 6
-FRAMES = TICKS * 26
+OUTPUTS = TICKS * 7
+FRAMES = TICKS * 28
 
 
 def rerun(log: Path, capsys, *options: str) -> tuple[int, str, str]:
@@ -119,8 +119,12 @@ def test_every_field_of_an_input_is_logged_to_the_bit():
             ffi().memmove(ffi().addressof(foot, "contact"), bytes([rng.randrange(2)]), 1)
         size = library().saddle_lcm_encode_input(given, number, room)
         assert library().saddle_lcm_decode_input(room, size, back, tick)
+        turn_size = library().saddle_lcm_encode_turn(given, room)
+        assert library().saddle_lcm_decode_turn(room, turn_size, back)
         assert leaves(back[0]) == leaves(given[0]) and tick[0] == number
     assert len(leaves(given[0])) >= 14
+    assert not library().saddle_lcm_decode_turn(room, turn_size - 1, back)
+    size = library().saddle_lcm_encode_input(given, number, room)
     assert not library().saddle_lcm_decode_input(room, size - 1, back, tick)
 
 
@@ -213,10 +217,12 @@ def test_a_log_of_older_firmware_is_complete(walk, tmp_path, capsys):
     """Without any message of the channel. If there are some, the others were lost."""
     events = events_of(walk)
     there = [i for i, event in enumerate(events) if event.channel == "SADDLEWALK_BALANCE"]
-    older = [event for event in events if event.channel != "SADDLEWALK_BALANCE"]
+    added = ("SADDLEWALK_BALANCE", "SADDLEWALK_WAY", "SADDLEWALK_TURN")
+    older = [event for event in events if event.channel not in added]
     status, shown, _ = rerun(write_events(tmp_path / "older", older), capsys)
     assert status == 0 and f"all {TICKS * 5} recorded outputs are equal" in shown
-    assert "SADDLEWALK_BALANCE is not in the log and was not compared" in shown
+    for channel in added[:2]:
+        assert f"{channel} is not in the log and was not compared" in shown
     del events[there[3]]
     status, shown, _ = rerun(write_events(tmp_path / "lost", events), capsys)
     assert status == 1
@@ -301,12 +307,12 @@ def test_a_can_log_with_another_body_differs(walk, capsys):
 
 def test_a_can_log_from_mid_run_or_with_losses_says_so(walk, tmp_path, capsys):
     frames = frames_of(walk)
-    log = can_log(tmp_path / "mid.log", frames[34 * 5 :])
+    log = can_log(tmp_path / "mid.log", frames[36 * 5 :])
     status, _, shown = rerun(log, capsys)
     assert (status, shown.count("\n")) == (2, 1) and "the log begins in mid-run" in shown
     answered = [i for i, frame in enumerate(frames) if frame.arbitration_id == 0x140]
     status, shown, _ = rerun(
-        can_log(tmp_path / "lost.log", frames[: answered[9] - 28] + frames[answered[9] + 1 :]),
+        can_log(tmp_path / "lost.log", frames[: answered[9] - 30] + frames[answered[9] + 1 :]),
         capsys,
     )
     assert status == 1 and "9 ticks recomputed" in shown and "2 sets of measurements came" in shown

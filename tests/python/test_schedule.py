@@ -235,3 +235,47 @@ def test_a_bad_option_is_a_one_line_error(options, named, capsys, tmp_path):
     assert run(*options, "--out", str(tmp_path / "plan.csv")) == 2
     captured = capsys.readouterr()
     assert captured.err.count("\n") == 1 and named in captured.err
+
+
+def test_a_turn_ends_in_the_heading_that_its_rate_makes(schedule, capsys):
+    """0.4 rad/s at 0.6 m/s is a circle of 1.5 m, and feet stay where they landed."""
+    path = schedule("0,0.6,0\n4,0.6,0.4\n14,0.6,0\n20,0,0\n", "t_s,speed_m_s,turn_rad_s")
+    rows = plan(capsys, path, "--dt", "0.02")
+    t, heading = column(rows, "t_s"), column(rows, "heading_rad")
+    steady = (t > 8) & (t < 14)
+    turned = np.unwrap(heading)
+    rate = (turned[steady][-1] - turned[steady][0]) / 6
+    assert rate == pytest.approx(0.4, abs=0.2 / 6)  # the heading is that of the feet, step by step
+    # Commanded for 10 s, and followed from landing to landing, each 0.81 s.
+    assert turned[-1] == pytest.approx(4.0, abs=0.4 * 0.81)
+    x, y = column(rows, "com_x_m")[steady], column(rows, "com_y_m")[steady]
+    design = np.column_stack([2 * x, 2 * y, np.ones_like(x)])
+    centre_x, centre_y, _ = np.linalg.lstsq(design, x**2 + y**2, rcond=None)[0]
+    radius = np.hypot(x - centre_x, y - centre_y)
+    lean = 0.6 * 0.4 / (9.80665 / 1.0203)
+    assert radius.mean() == pytest.approx(1.5 - lean, abs=5e-3)
+    for side in ("left", "right"):
+        stands = column(rows, f"{side}_z_m") == 0
+        held = stands[1:] & stands[:-1]
+        for name in (f"{side}_x_m", f"{side}_y_m", f"{side}_yaw_rad"):
+            assert np.abs(np.diff(np.unwrap(column(rows, name)))[held]).max() < 1e-6
+
+
+def test_a_turn_that_the_speed_does_not_bear_is_limited_and_named(schedule, capsys):
+    path = schedule("0,1.2,0.9\n3,1.2,0.2\n", "t_s,speed_m_s,turn_rad_s")
+    assert run("--schedule", path) == 0
+    notes = capsys.readouterr().err
+    assert "line 2, turn_rad_s: 0.9 is not feasible at this speed: limited" in notes
+    assert notes.count("turn_rad_s") == 1
+
+
+def test_a_schedule_without_turns_says_so_in_every_row(schedule, capsys):
+    rows = plan(capsys, schedule("0,0.6\n4,0\n"))
+    assert {row["heading_rad"] for row in rows} == {"0.0"}
+
+
+@pytest.mark.parametrize("cell", ["nan", "11", "left"])
+def test_a_turning_rate_that_is_none_is_rejected(schedule, cell, capsys):
+    path = schedule(f"0,0.6,{cell}\n", "t_s,speed_m_s,turn_rad_s")
+    assert run("--schedule", path) == 2
+    assert "line 2, turn_rad_s" in capsys.readouterr().err

@@ -46,6 +46,8 @@ def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
         "PLAN_REFERENCE_COP": {"X": 0.02, "Y": 0.05, "LOAD_RIGHT": 0.0},
         "PLAN_REFERENCE_COM": {"X": 0.0, "Y": 0.02, "RATE": 0.0},
         "PLAN_LAST_STEP": {"X": 0.7, "Y": 0.1, "WIDTH": 0.1},
+        "PLAN_WAY": {"HEADING": 0.1, "CURVATURE_BEHIND": 0.2, "CURVATURE_AHEAD": 0.3},
+        "PLAN_YAW": {"LEFT": 0.0, "RIGHT": -0.05, "PELVIS": 0.01},
         "SCORES_STEP": {"S_PEND": 1.0, "S_JUMP": 1.0, "S_SW": 1.0},
         "SCORES_MARGIN": {"MOS_COM": 0.1, "MOS_XCOM": 0.1, "V_COMP": 1.2},
         "SCORES_FORCE": {"GRAVITY_X": 0.0, "GRAVITY_Y": 0.0, "FAULTS": 0},

@@ -16,7 +16,7 @@ from saddlewalk.transport import wire
 pytestmark = pytest.mark.firmware
 
 SEED = 20261122
-OUTPUTS = 1000  # of 29 frames
+OUTPUTS = 1000  # of 31 frames
 INPUTS = 3000  # of 4 frames
 
 NUMBERS = {
@@ -73,6 +73,16 @@ NUMBERS = {
         "X": "plan.last_step_m.x",
         "Y": "plan.last_step_m.y",
         "WIDTH": "plan.step_width_m",
+    },
+    "PLAN_WAY": {
+        "HEADING": "plan.heading_rad",
+        "CURVATURE_BEHIND": "plan.curvature_1_m.0",
+        "CURVATURE_AHEAD": "plan.curvature_1_m.1",
+    },
+    "PLAN_YAW": {
+        "LEFT": "plan.foot_yaw_rad.0",
+        "RIGHT": "plan.foot_yaw_rad.1",
+        "PELVIS": "plan.pelvis_yaw_rad",
     },
     "SCORES_STEP": {"S_PEND": "scores.s_pend", "S_JUMP": "scores.s_jump", "S_SW": "scores.s_sw"},
     "SCORES_MARGIN": {
@@ -169,7 +179,12 @@ COUNTS = {
     },
 }
 TIMES = {"PERIOD": "period_us", "LATENCY": "latency_us", "LATENCY_MAX": "latency_max_us"}
-COMMAND = {"SPEED": "speed_m_s", "HEEL_STRIKE": "heel_strike_rad"}
+COMMAND = {
+    "SPEED": "speed_m_s",
+    "HEEL_STRIKE": "heel_strike_rad",
+    "TURN_RATE": "turn_rate_rad_s",
+}
+BYTE = {"TURN_RATE"}  # numbers of 8 bits; the others have 16
 
 ffi = FFI()
 
@@ -206,17 +221,18 @@ def same(a: float, b: float) -> bool:
 def scale_of(message: str, signal: str) -> float:
     """Read from the DBC's text, apart from the code under test."""
     text = (paths.CHECKOUT / "firmware/wire/saddlewalk.dbc").read_text()
-    pattern = rf"BO_ \d+ {message}:.*?SG_ {signal} : \d+\|16@1- \(([^,]+),0\)"
+    bits = 8 if signal in BYTE else 16
+    pattern = rf"BO_ \d+ {message}:.*?SG_ {signal} : \d+\|{bits}@1- \(([^,]+),0\)"
     return float(re.search(pattern, text, re.DOTALL)[1])
 
 
-def any_number(rng: random.Random, scale: float) -> float:
+def any_number(rng: random.Random, scale: float, last: int = 32767) -> float:
     """Ordinary, on and beyond the ends of the range, halfway between two steps, or no number."""
-    end = 32767 * scale
+    end = last * scale
     kinds = (
         lambda: rng.uniform(-end, end),
-        lambda: rng.randint(-32768, 32768) * scale,
-        lambda: (rng.randint(-32768, 32767) + 0.5) * scale,
+        lambda: rng.randint(-last - 1, last + 1) * scale,
+        lambda: (rng.randint(-last - 1, last) + 0.5) * scale,
         lambda: rng.choice((-1, 1)) * (end + rng.uniform(-2, 2) * scale),
         lambda: rng.choice((-1, 1)) * end * 10 ** rng.uniform(0, 30),
         lambda: rng.choice((0.0, -0.0, 1e-45, -1e-39, 3.4e38, math.inf, -math.inf, math.nan)),
@@ -394,7 +410,10 @@ def test_command_both_ways(codec):
     sender, python = wire.Sender(), wire.Receiver()
     c = ffi.new("saddle_wire_receiver_t *")
     for counter in range(INPUTS):
-        values = {name: any_number(rng, scale_of("COMMAND", name)) for name in COMMAND}
+        values = {
+            name: any_number(rng, scale_of("COMMAND", name), 127 if name in BYTE else 32767)
+            for name in COMMAND
+        }
         for name, field in COMMAND.items():
             put(command, field, values[name])
         command.mode = rng.choice((0, 1, 2, 15, 16, 17, 255))
@@ -420,6 +439,19 @@ def test_every_raw_value_decodes_alike(codec):
         codec.saddle_wire_decode_command(bytes(frame.data), decoded)
         _, values = wire.Receiver().accept(frame)
         assert same(decoded.speed_m_s, values["SPEED"])
+
+
+def test_every_byte_decodes_alike(codec):
+    decoded = ffi.new("saddle_command_t *")
+    frame = wire.Sender().frame("COMMAND", MODE=1, SPEED=0.0, HEEL_STRIKE=0.0)
+    for raw in range(256):
+        frame.data[7] = raw
+        frame.data[0] = wire.frame_crc(frame.arbitration_id, frame.data)
+        codec.saddle_wire_decode_command(bytes(frame.data), decoded)
+        _, values = wire.Receiver().accept(frame)
+        assert same(decoded.turn_rate_rad_s, values["TURN_RATE"])
+        signed = raw - 256 if raw > 127 else raw
+        assert raw == 128 or values["TURN_RATE"] == pytest.approx(0.01 * signed)
 
 
 def test_counter_rule_on_both_sides(codec):

@@ -91,7 +91,7 @@ static hash_t golden(void)
     hash_t hash = EMPTY;
     for (size_t run = 0; run < COUNT_OF(speeds) * COUNT_OF(angles); run++) {
         saddle_input_t input = {
-            .command = {SADDLE_COMMAND_WALK, speeds[run / 3u], angles[run % 3u]},
+            .command = {SADDLE_COMMAND_WALK, speeds[run / 3u], angles[run % 3u], 0.0f},
             .measurement = saddle_no_measurement(),
         };
         (void)saddle_init(&context, &config);
@@ -121,7 +121,7 @@ static hash_t ticks(sequence_kind_t kind, hash_t *frames)
 
 int main(void)
 {
-    static const char *const names[] = {"valid", "absurd", "not_finite"};
+    static const char *const names[] = {"valid", "absurd", "not_finite", "turning"};
     hash_t frames = EMPTY;
     print("math", math());
     print("golden", golden());

@@ -34,7 +34,7 @@ static uint32_t random_size(sequence_t *sequence)
 
 static bool hostile(const sequence_t *sequence)
 {
-    return sequence->kind != SEQUENCE_VALID;
+    return sequence->kind != SEQUENCE_VALID && sequence->kind != SEQUENCE_TURNING;
 }
 
 /* ---- numbers that no body has -------------------------------------------------------------- */
@@ -67,6 +67,7 @@ static void spoil_input(sequence_t *sequence)
     saddle_input_t *input = &sequence->input;
     spoil(sequence, &input->command.speed_m_s);
     spoil(sequence, &input->command.heel_strike_rad);
+    spoil(sequence, &input->command.turn_rate_rad_s);
     spoil(sequence, &input->measurement.com.height_m);
     spoil(sequence, &input->measurement.com.velocity_m_s.x);
     spoil(sequence, &input->measurement.com.velocity_m_s.y);
@@ -122,6 +123,8 @@ static void new_command(sequence_t *sequence)
     command->mode = (uint8_t)(one_in(sequence, 3) ? SADDLE_COMMAND_STAND : SADDLE_COMMAND_WALK);
     command->speed_m_s = random_in(sequence, 0.1f, 1.9f);
     command->heel_strike_rad = random_in(sequence, 0.0f, 0.3f);
+    command->turn_rate_rad_s =
+        sequence->kind == SEQUENCE_TURNING ? random_in(sequence, -0.6f, 0.6f) : 0.0f;
 }
 
 /* Where the plan is, but for noise and what is left of the last push. */

@@ -12,6 +12,7 @@ typedef enum {
     SEQUENCE_VALID = 0,
     SEQUENCE_ABSURD = 1,     /**< finite numbers of any size, any configuration, time that leaps */
     SEQUENCE_NOT_FINITE = 2, /**< and any bits for a float */
+    SEQUENCE_TURNING = 3,    /**< valid, and each command turns */
     SEQUENCE_COUNT
 } sequence_kind_t;
 

@@ -17,7 +17,7 @@ void setUp(void)
     config = paper_config();
     config.lost_inputs_stop = 0.0f;
     TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
-    input = (saddle_input_t){.command = {SADDLE_COMMAND_STAND, 0.0f, 0.0f}};
+    input = (saddle_input_t){.command = {SADDLE_COMMAND_STAND, 0.0f, 0.0f, 0.0f}};
     seed = 20261130;
     tick_us = 80000u;
 }
@@ -595,7 +595,7 @@ static saddle_measurement_t measured_plan(const saddle_plan_t *plan)
 static void test_walk_out_of_step_with_the_plan_is_not_a_fall(void)
 {
     static saddle_context_t other;
-    saddle_input_t walked = {.command = {SADDLE_COMMAND_WALK, 1.2f, 0.17f}};
+    saddle_input_t walked = {.command = {SADDLE_COMMAND_WALK, 1.2f, 0.17f, 0.0f}};
     walked.measurement = saddle_no_measurement();
     saddle_output_t planned;
     saddle_init(&other, &config);

@@ -150,7 +150,7 @@ static void assert_landings_are_expected(void)
 {
     for (size_t i = 0; i < COUNT_OF(SPEEDS); i++) {
         saddle_context_t context;
-        saddle_input_t input = {.command = {SADDLE_COMMAND_WALK, SPEEDS[i], 0.1f},
+        saddle_input_t input = {.command = {SADDLE_COMMAND_WALK, SPEEDS[i], 0.1f, 0.0f},
                                 .measurement = saddle_no_measurement()};
         saddle_output_t output;
         saddle_init(&context, &config);

@@ -82,6 +82,49 @@ static void test_distance_is_speed_times_time(void)
     }
 }
 
+static void test_angle_is_curvature_times_way(void)
+{
+    uint32_t state = 12;
+    for (int i = 0; i < 100000; i++) {
+        const float curvature = random_in(&state, -3.9f, 3.9f);
+        const int64_t nm = (int64_t)(random_bits(&state) % 2000000000u);
+        const double expected = (double)curvature * (1e-9 * (double)nm);
+        const double angle = (double)saddle_angle(saddle_speed_from_m_s(curvature), nm) / UNITS;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12 + 2e-9 * fabs((double)curvature), expected, angle);
+    }
+    TEST_ASSERT_TRUE(saddle_angle(saddle_speed_from_m_s(1.0f), -5) == 0);
+    TEST_ASSERT_TRUE(saddle_angle(saddle_speed_from_m_s(1.0f), 3000000000) ==
+                     saddle_angle(saddle_speed_from_m_s(1.0f), 1999999999));
+}
+
+static void test_sum_of_angles_stays_within_half_a_turn(void)
+{
+    const double pi = 3.14159265358979323846;
+    uint32_t state = 13;
+    for (int i = 0; i < 100000; i++) {
+        const float a = random_in(&state, -3.14159f, 3.14159f);
+        const float b = random_in(&state, -3.14159f, 3.14159f);
+        const double sum =
+            (double)saddle_angle_sum(saddle_speed_from_m_s(a), saddle_speed_from_m_s(b)) / UNITS;
+        TEST_ASSERT_TRUE(fabs(sum) <= pi + 1e-12);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-11, 0.0, remainder((double)a + (double)b - sum, 2.0 * pi));
+    }
+}
+
+static void test_share_of_a_length(void)
+{
+    uint32_t state = 14;
+    for (int i = 0; i < 100000; i++) {
+        const float factor = random_in(&state, -1.0f, 1.0f);
+        const int64_t nm = (int64_t)(random_bits(&state) % 2000000000u) - 1000000000;
+        TEST_ASSERT_DOUBLE_WITHIN(2.0, (double)factor * (double)nm,
+                                  (double)saddle_share_nm(nm, factor));
+    }
+    TEST_ASSERT_TRUE(saddle_share_nm(1234567890, 1.0f) == 1234567890);
+    TEST_ASSERT_TRUE(saddle_share_nm(-1234567890, 1.0f) == -1234567890);
+    TEST_ASSERT_TRUE(saddle_share_nm(1234567890, 2.0f) == 1234567890);
+}
+
 static void test_change_is_rate_times_time(void)
 {
     uint32_t state = 9;
@@ -133,6 +176,9 @@ static void test_any_bits_give_a_number_within_the_range(void)
         TEST_ASSERT_TRUE(fabsf(saddle_position_to_m(any)) <= 2.1f);
         TEST_ASSERT_TRUE(fabsf(saddle_speed_to_m_s(any)) <= 4.0f);
         (void)saddle_position_to_nm(any);
+        (void)saddle_angle(any, any);
+        (void)saddle_angle_sum(any, speed);
+        (void)saddle_share_nm(any, value);
     }
 }
 
@@ -164,6 +210,9 @@ int main(void)
     RUN_TEST(test_position_is_exact_to_a_picometre);
     RUN_TEST(test_nanometres_are_the_nearest);
     RUN_TEST(test_distance_is_speed_times_time);
+    RUN_TEST(test_angle_is_curvature_times_way);
+    RUN_TEST(test_sum_of_angles_stays_within_half_a_turn);
+    RUN_TEST(test_share_of_a_length);
     RUN_TEST(test_change_is_rate_times_time);
     RUN_TEST(test_any_bits_give_a_number_within_the_range);
     RUN_TEST(test_ends_of_the_range);

@@ -99,7 +99,7 @@ static void test_via_points_are_passed_in_order_and_to_the_nanometre(void)
         TEST_ASSERT_EQUAL_UINT8((phase + 1u) % 4u, cycle.phase);
         TEST_ASSERT_EQUAL_UINT32((quarter + 1u) / 2u, cycle.step_count);
         TEST_ASSERT_EQUAL_UINT32(quarter / 4u, cycle.stride_count);
-        TEST_ASSERT_TRUE(cycle.origin_x_nm == 2 * half_nm * (int64_t)cycle.step_count);
+        TEST_ASSERT_TRUE(cycle.way.origin_x_nm == 2 * half_nm * (int64_t)cycle.step_count);
     }
 }
 
@@ -119,7 +119,7 @@ static void test_long_tick_passes_every_via_point(void)
     advance(1600000, &arrived); /* 6 of them at once */
     TEST_ASSERT_EQUAL_UINT32(fine.step_count, cycle.step_count);
     TEST_ASSERT_EQUAL_UINT8(fine.phase, cycle.phase);
-    TEST_ASSERT_TRUE(fine.origin_x_nm == cycle.origin_x_nm);
+    TEST_ASSERT_TRUE(fine.way.origin_x_nm == cycle.way.origin_x_nm);
     TEST_ASSERT_TRUE(fine.position == cycle.position);
 }
 
@@ -294,16 +294,16 @@ static void test_next_step_starts_from_the_foot_that_is_there(void)
 {
     bool arrived;
     walk_to_landing(false, 0);
-    const int64_t origin = cycle.origin_x_nm;
+    const int64_t origin = cycle.way.origin_x_nm;
     TEST_ASSERT_TRUE(land_at(0.05f, -0.04f));
-    TEST_ASSERT_DOUBLE_WITHIN(60.0, 5e7, (double)(cycle.origin_x_nm - origin));
+    TEST_ASSERT_DOUBLE_WITHIN(60.0, 5e7, (double)(cycle.way.origin_x_nm - origin));
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, -0.0664 - 0.04, cycle.stance_y_m);
     const uint32_t steps = cycle.step_count;
-    const int64_t from = cycle.origin_x_nm;
+    const int64_t from = cycle.way.origin_x_nm;
     while (cycle.step_count == steps) {
         advance(1000, &arrived);
     }
-    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.6306, (double)(cycle.origin_x_nm - from) * 1e-9);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.6306, (double)(cycle.way.origin_x_nm - from) * 1e-9);
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, 0.0664, cycle.stance_y_m);
 }
 
@@ -352,7 +352,7 @@ static void test_moved_landing_becomes_the_stance_foot_where_it_is(void)
     bool arrived;
     walk_before_landing(1.2f, 0.2);
     const saddle_vec2_t step = planned_step();
-    const int64_t origin_nm = cycle.origin_x_nm;
+    const int64_t origin_nm = cycle.way.origin_x_nm;
     const float stance_y = cycle.stance_y_m;
     place(0.1f, -0.06f);
     saddle_pose_t last = pose();
@@ -364,7 +364,7 @@ static void test_moved_landing_becomes_the_stance_foot_where_it_is(void)
     TEST_ASSERT_DOUBLE_WITHIN(2e-7, (double)step.x + 0.1, cycle.last_step_m.x);
     TEST_ASSERT_DOUBLE_WITHIN(2e-7, (double)step.y - 0.06, cycle.last_step_m.y);
     TEST_ASSERT_DOUBLE_WITHIN(2e-7, cycle.last_step_m.x,
-                              1e-9 * (double)(cycle.origin_x_nm - origin_nm));
+                              1e-9 * (double)(cycle.way.origin_x_nm - origin_nm));
     TEST_ASSERT_DOUBLE_WITHIN(2e-7, cycle.last_step_m.y, cycle.stance_y_m - stance_y);
     /* In 0.1 ms no more than at 2 m/s along x, by E9's line, and at 0.2 m/s across. */
     TEST_ASSERT_DOUBLE_WITHIN(2e-4, cycle.last_step_m.x, last.swing.position_m.x);

@@ -60,7 +60,7 @@ static void change_wearer(void)
 
 static void begin(void)
 {
-    const saddle_command_t walk = {SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f};
+    const saddle_command_t walk = {SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f, 0.0f};
     TEST_ASSERT_EQUAL(SADDLE_OK, saddle_init(&plan_context, &config));
     TEST_ASSERT_EQUAL(SADDLE_OK, saddle_init(&wearer_context, &wearer));
     TEST_ASSERT_EQUAL(SADDLE_OK, saddle_join(&plan_context, &walk));
@@ -110,7 +110,7 @@ static void tick(void)
     saddle_output_t body;
     saddle_input_t input = {
         .time_us = time_us,
-        .command = {SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f},
+        .command = {SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f, 0.0f},
         .measurement = saddle_no_measurement(),
     };
     TEST_ASSERT_EQUAL(SADDLE_OK, saddle_tick(&wearer_context, &input, &body));
@@ -229,7 +229,7 @@ static void walk_spoiled(spoil_t *spoil, int every)
         saddle_output_t body;
         saddle_input_t input = {
             .time_us = time_us,
-            .command = {SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f},
+            .command = {SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f, 0.0f},
             .measurement = saddle_no_measurement(),
         };
         saddle_tick(&wearer_context, &input, &body);
@@ -420,7 +420,7 @@ static void test_old_measurements_are_compared_with_the_plan_of_their_time(void)
         saddle_output_t body;
         saddle_input_t input = {
             .time_us = time_us,
-            .command = {SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f},
+            .command = {SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f, 0.0f},
             .measurement = saddle_no_measurement(),
         };
         saddle_tick(&wearer_context, &input, &body);

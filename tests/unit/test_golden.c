@@ -72,7 +72,8 @@ static void replay(const golden_run_t *run)
     static saddle_context_t context;
     static saddle_output_t output;
     const saddle_config_t config = paper_config();
-    const saddle_command_t command = {SADDLE_COMMAND_WALK, run->speed_m_s, run->heel_strike_rad};
+    const saddle_command_t command = {SADDLE_COMMAND_WALK, run->speed_m_s, run->heel_strike_rad,
+                                      0.0f};
     TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_init(&context, &config));
     TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_join(&context, &command));
     for (size_t i = 0; i < run->row_count; i++) {

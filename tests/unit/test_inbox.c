@@ -5,9 +5,9 @@
 
 static saddle_inbox_t inbox;
 
-static const saddle_command_t walk = {SADDLE_COMMAND_WALK, 1.2f, 0.17f};
-static const saddle_command_t stroll = {SADDLE_COMMAND_WALK, 0.5f, 0.17f};
-static const saddle_command_t no_mode = {7, 0.0f, 0.0f};
+static const saddle_command_t walk = {SADDLE_COMMAND_WALK, 1.2f, 0.17f, 0.0f};
+static const saddle_command_t stroll = {SADDLE_COMMAND_WALK, 0.5f, 0.17f, 0.0f};
+static const saddle_command_t no_mode = {7, 0.0f, 0.0f, 0.0f};
 
 void setUp(void)
 {

@@ -23,7 +23,7 @@ static void stand(float speed_m_s)
 {
     body = model_of(&config)->body;
     saddle_planner_reset(&planner, model_of(&config));
-    command = (saddle_command_t){SADDLE_COMMAND_WALK, speed_m_s, 0.17453293f};
+    command = (saddle_command_t){SADDLE_COMMAND_WALK, speed_m_s, 0.17453293f, 0.0f};
     feet_known = false;
 }
 
@@ -487,7 +487,7 @@ static void test_command_at_any_moment_takes_effect(void)
             tick(random_bits(&state) % 80000u);
         }
         braked += planner.braking || planner.shifting ? 1 : 0;
-        command = (saddle_command_t){SADDLE_COMMAND_WALK, 0.8f, 0.1f};
+        command = (saddle_command_t){SADDLE_COMMAND_WALK, 0.8f, 0.1f, 0.0f};
         for (int k = 0; k < 150; k++) {
             tick(80000);
         }
@@ -672,7 +672,7 @@ static void test_start_after_an_unmeasured_walk_uses_no_old_landing(void)
     join(0.5f);
     command.mode = SADDLE_COMMAND_STAND;
     time_to_stand(80000);
-    command = (saddle_command_t){SADDLE_COMMAND_WALK, 1.0f, 0.1f};
+    command = (saddle_command_t){SADDLE_COMMAND_WALK, 1.0f, 0.1f, 0.0f};
     measure(0.2f, 0.1f, -0.1f, -0.1f);
     for (int k = 0; k < 14; k++) {
         TEST_ASSERT_EQUAL_HEX32(0, tick(80000));
@@ -918,6 +918,41 @@ static void test_longer_side_stays_within_reach_up_to_the_ceiling(void)
     }
 }
 
+static void test_turning_rate_is_limited_to_what_the_speed_bears(void)
+{
+    static const struct {
+        float speed_m_s, rate_rad_s;
+        bool limited;
+    } table[] = {{1.2f, 0.28f, false}, {1.2f, -0.31f, true},  {0.6f, 0.6f, false},
+                 {0.6f, 0.63f, true},  {0.05f, 0.08f, false}, {0.05f, 0.1f, true},
+                 {1.9f, 0.02f, false}, {1.9f, 0.25f, true},   {0.0f, 5.0f, false}};
+    for (size_t i = 0; i < COUNT_OF(table); i++) {
+        stand(table[i].speed_m_s);
+        command.turn_rate_rad_s = table[i].rate_rad_s;
+        TEST_ASSERT_EQUAL(table[i].limited, (tick(0) & (uint32_t)SADDLE_LIMIT_TURN) != 0u);
+    }
+}
+
+/* [E48] [E49] A circle of 2 m, from the first instant. */
+static void test_joined_turn_is_steady(void)
+{
+    stand(0.8f);
+    command.turn_rate_rad_s = 0.4f;
+    saddle_planner_join(&planner, model_of(&config), &command);
+    tick(0);
+    const double lean = 0.4 * 0.8 * 1.0203 / GRAVITY;
+    const double amplitude = (double)(0.3456f - 0.2128f * 0.8f) / (2.0 * PI * 0.8);
+    TEST_ASSERT_DOUBLE_WITHIN(TOLERANCE, 0.5, plan.curvature_1_m[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(TOLERANCE, 0.5, plan.curvature_1_m[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, amplitude + lean, plan.com_m.y);
+    for (int step = 1; step < 60; step++) {
+        tick(80000);
+        TEST_ASSERT_DOUBLE_WITHIN(TOLERANCE, 0.5, plan.curvature_1_m[1]);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, plan.step_count * 0.5 * (double)plan.step_length_m,
+                              plan.heading_rad);
+}
+
 static void test_heel_strike_angle_is_limited(void)
 {
     const struct {
@@ -948,7 +983,7 @@ static void test_limits_of_one_command_end_with_it(void)
     TEST_ASSERT_EQUAL_HEX32(SADDLE_LIMIT_SPEED | SADDLE_LIMIT_HEEL_STRIKE, tick(0));
     command.mode = SADDLE_COMMAND_STAND;
     TEST_ASSERT_EQUAL_HEX32(0, tick(80000));
-    command = (saddle_command_t){SADDLE_COMMAND_WALK, 1.2f, 0.1f};
+    command = (saddle_command_t){SADDLE_COMMAND_WALK, 1.2f, 0.1f, 0.0f};
     TEST_ASSERT_EQUAL_HEX32(0, tick(80000));
 }
 
@@ -958,17 +993,20 @@ static void test_usable_commands(void)
         saddle_command_t command;
         bool usable;
     } table[] = {
-        {{SADDLE_COMMAND_STAND, 0.0f, 0.0f}, true},
-        {{SADDLE_COMMAND_WALK, 1.2f, 0.1f}, true},
-        {{SADDLE_COMMAND_WALK, -5.0f, -1.0f}, true},
-        {{SADDLE_COMMAND_WALK, 1e6f, 1e6f}, true},
-        {{2, 1.2f, 0.1f}, false},
-        {{255, 1.2f, 0.1f}, false},
-        {{SADDLE_COMMAND_WALK, NAN, 0.1f}, false},
-        {{SADDLE_COMMAND_WALK, 1.2f, NAN}, false},
-        {{SADDLE_COMMAND_STAND, NAN, NAN}, true},
-        {{SADDLE_COMMAND_WALK, INFINITY, 0.1f}, false},
-        {{SADDLE_COMMAND_WALK, 1.2f, -INFINITY}, false},
+        {{SADDLE_COMMAND_STAND, 0.0f, 0.0f, 0.0f}, true},
+        {{SADDLE_COMMAND_WALK, 1.2f, 0.1f, 0.0f}, true},
+        {{SADDLE_COMMAND_WALK, -5.0f, -1.0f, 0.0f}, true},
+        {{SADDLE_COMMAND_WALK, 1e6f, 1e6f, 0.0f}, true},
+        {{2, 1.2f, 0.1f, 0.0f}, false},
+        {{255, 1.2f, 0.1f, 0.0f}, false},
+        {{SADDLE_COMMAND_WALK, NAN, 0.1f, 0.0f}, false},
+        {{SADDLE_COMMAND_WALK, 1.2f, NAN, 0.0f}, false},
+        {{SADDLE_COMMAND_STAND, NAN, NAN, 0.0f}, true},
+        {{SADDLE_COMMAND_WALK, INFINITY, 0.1f, 0.0f}, false},
+        {{SADDLE_COMMAND_WALK, 1.2f, -INFINITY, 0.0f}, false},
+        {{SADDLE_COMMAND_WALK, 1.2f, 0.1f, -1e6f}, true},
+        {{SADDLE_COMMAND_WALK, 1.2f, 0.1f, NAN}, false},
+        {{SADDLE_COMMAND_STAND, 1.2f, 0.1f, NAN}, true},
     };
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         TEST_ASSERT_EQUAL(table[i].usable, saddle_command_usable(&table[i].command));
@@ -1009,6 +1047,8 @@ int main(void)
     RUN_TEST(test_sides_step_by_their_own_factors);
     RUN_TEST(test_speed_is_limited_to_what_is_feasible);
     RUN_TEST(test_longer_side_stays_within_reach_up_to_the_ceiling);
+    RUN_TEST(test_turning_rate_is_limited_to_what_the_speed_bears);
+    RUN_TEST(test_joined_turn_is_steady);
     RUN_TEST(test_heel_strike_angle_is_limited);
     RUN_TEST(test_limits_of_one_command_end_with_it);
     RUN_TEST(test_usable_commands);

@@ -26,16 +26,16 @@ static saddle_measurement_t present;
 
 static void tick_of(uint32_t dt_us)
 {
-    const saddle_command_t command = {(uint8_t)SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f};
+    const saddle_command_t command = {(uint8_t)SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f, 0.0f};
     saddle_planner_update(&planner, model_of(&config), &command, NULL, dt_us);
     saddle_plan_write(&planner, model_of(&config), &plan);
-    saddle_remember_plan(&past, &plan, dt_us);
+    saddle_remember_plan(&past, &plan, (uint32_t)plan.origin_x_nm, dt_us);
 }
 
 /* A steady walk with ticks of dt_us, up to a time of it. */
 static void walk(uint32_t time_us, uint32_t dt_us)
 {
-    const saddle_command_t command = {(uint8_t)SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f};
+    const saddle_command_t command = {(uint8_t)SADDLE_COMMAND_WALK, SPEED_M_S, 0.17f, 0.0f};
     memset(&past, 0, sizeof past);
     memset(&planner, 0, sizeof planner);
     saddle_planner_join(&planner, model_of(&config), &command);
@@ -218,7 +218,7 @@ static void test_nothing_is_brought_further_forward_than_a_fifth_of_a_second(voi
 static void test_before_a_plan_is_remembered_it_counts_as_the_present_one(void)
 {
     memset(&past, 0, sizeof past);
-    saddle_remember_plan(&past, &plan, 0);
+    saddle_remember_plan(&past, &plan, (uint32_t)plan.origin_x_nm, 0);
     const saddle_measurement_t measured = measured_of(&plan, &DEPARTURE, TICK_US);
     const departure_t later = grown(&DEPARTURE, TICK_US);
     const saddle_measurement_t expected = measured_of(&plan, &later, TICK_US);

@@ -32,7 +32,7 @@ static void test_other_rounding_modes_are_detected_by_init(void)
     const saddle_config_t config = paper_config();
     static saddle_context_t context;
     static saddle_output_t output;
-    const saddle_input_t input = {.command = {SADDLE_COMMAND_STAND, 0.0f, 0.0f}};
+    const saddle_input_t input = {.command = {SADDLE_COMMAND_STAND, 0.0f, 0.0f, 0.0f}};
     for (size_t i = 0; i < COUNT_OF(modes); i++) {
         TEST_ASSERT_EQUAL_INT(0, fesetround(modes[i]));
         const saddle_status_t status = saddle_init(&context, &config);

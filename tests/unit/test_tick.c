@@ -28,7 +28,7 @@ static saddle_measurement_t good_measurement(void)
 static saddle_input_t walking_input(uint64_t time_us)
 {
     return (saddle_input_t){.time_us = time_us,
-                            .command = {SADDLE_COMMAND_WALK, 1.2f, 0.17453293f},
+                            .command = {SADDLE_COMMAND_WALK, 1.2f, 0.17453293f, 0.0f},
                             .measurement = good_measurement()};
 }
 
@@ -246,7 +246,7 @@ static void test_stop_is_applied_whatever_its_numbers(void)
 {
     join();
     tick_at(0);
-    input.command = (saddle_command_t){SADDLE_COMMAND_STAND, NAN, INFINITY};
+    input.command = (saddle_command_t){SADDLE_COMMAND_STAND, NAN, INFINITY, 0.0f};
     tick_at(80000);
     TEST_ASSERT_EQUAL_HEX32(0, output.faults);
     TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STOPPING, output.plan.mode);
@@ -445,6 +445,7 @@ static void random_input(uint32_t *state, bool plausible, saddle_input_t *any)
         any->command.mode = (uint8_t)(choice < 128u ? 1u : random_bits(state));
         any->command.speed_m_s = random_float(state, 3.0f);
         any->command.heel_strike_rad = random_float(state, 0.6f);
+        any->command.turn_rate_rad_s = random_float(state, 1.0f);
     }
     any->command_age_us = random_bits(state) % 64u == 0u ? random_bits(state) : 0u;
     if (plausible) {
@@ -460,7 +461,7 @@ static void assert_sound_plan(const saddle_output_t *o)
     TEST_ASSERT_TRUE_MESSAGE(finite_output(o), "not finite");
     TEST_ASSERT_TRUE(o->status == SADDLE_OK || o->status == SADDLE_ERROR_TIME);
     TEST_ASSERT_EQUAL(o->status == SADDLE_OK, plan->valid);
-    TEST_ASSERT_TRUE(o->limits < 1u << 6);
+    TEST_ASSERT_TRUE(o->limits < 1u << 7);
     TEST_ASSERT_TRUE(plan->phase <= 3u && plan->support <= 1u && plan->mode <= 3u);
     TEST_ASSERT_TRUE(plan->theta_rad >= 0.0f && (double)plan->theta_rad < 2.0 * PI);
     TEST_ASSERT_TRUE(plan->speed_m_s >= 0.0f);
@@ -638,7 +639,7 @@ static void test_any_bytes_in_any_configuration_give_a_sound_output(void)
     TEST_ASSERT_GREATER_THAN_INT(5000, valid_scores);
     TEST_ASSERT_GREATER_THAN_INT(1000, refused);
     TEST_ASSERT_EQUAL_HEX32((1u << 16) - 1u, faults); /* each was met */
-    TEST_ASSERT_EQUAL_HEX32((1u << 6) - 1u, limits);
+    TEST_ASSERT_EQUAL_HEX32((1u << 7) - 1u, limits);
     for (size_t i = 0; i < COUNT_OF(levels); i++) {
         TEST_ASSERT_GREATER_THAN_INT(5000, levels[i]);
     }
@@ -734,7 +735,7 @@ static void test_reference_at_once_is_the_plan_s(void)
 static void test_reference_goes_on_without_a_jump_from_standing_on(void)
 {
     for (uint64_t t = 0; t < 4000000u; t += 80000u) {
-        input.command = (saddle_command_t){SADDLE_COMMAND_WALK, 1.2f, 0.17f};
+        input.command = (saddle_command_t){SADDLE_COMMAND_WALK, 1.2f, 0.17f, 0.0f};
         tick_at(t);
         saddle_reference_t before = reference_after(0.0f);
         for (int k = 1; k <= 100; k++) {
@@ -949,9 +950,9 @@ static void test_plan_at_beyond_its_span_is_rejected(void)
 static void test_join_needs_a_walk(void)
 {
     const saddle_command_t bad[] = {
-        {SADDLE_COMMAND_STAND, 1.0f, 0.1f},    {SADDLE_COMMAND_WALK, 0.0f, 0.1f},
-        {SADDLE_COMMAND_WALK, -1.0f, 0.1f},    {SADDLE_COMMAND_WALK, NAN, 0.1f},
-        {SADDLE_COMMAND_WALK, 1.0f, INFINITY}, {7, 1.0f, 0.1f}};
+        {SADDLE_COMMAND_STAND, 1.0f, 0.1f, 0.0f},    {SADDLE_COMMAND_WALK, 0.0f, 0.1f, 0.0f},
+        {SADDLE_COMMAND_WALK, -1.0f, 0.1f, 0.0f},    {SADDLE_COMMAND_WALK, NAN, 0.1f, 0.0f},
+        {SADDLE_COMMAND_WALK, 1.0f, INFINITY, 0.0f}, {7, 1.0f, 0.1f, 0.0f}};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         TEST_ASSERT_EQUAL_INT(SADDLE_ERROR_COMMAND, saddle_join(&context, &bad[i]));
     }

@@ -264,6 +264,53 @@ static void test_a_command_is_decoded(void)
     TEST_ASSERT_EQUAL_UINT8(SADDLE_COMMAND_WALK, command.mode);
     TEST_ASSERT_EQUAL_FLOAT(1.2f, command.speed_m_s);
     TEST_ASSERT_EQUAL_FLOAT(0.1745f, command.heel_strike_rad);
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, command.turn_rate_rad_s);
+}
+
+/** In byte 7: steps of 0.01 rad/s, which saturate, and -128 for what is no number. */
+static void test_turning_rate_has_a_byte(void)
+{
+    static const struct {
+        float rate_rad_s, decoded_rad_s;
+        uint8_t byte;
+    } table[] = {{0.4f, 0.4f, 0x28},   {-0.014f, -0.01f, 0xFF}, {0.005f, 0.01f, 0x01},
+                 {-0.3f, -0.3f, 0xE2}, {5.0f, 1.27f, 0x7F},     {-400.0f, -1.27f, 0x81},
+                 {1e9f, 1.27f, 0x7F}};
+    saddle_command_t command = {.mode = SADDLE_COMMAND_WALK, .speed_m_s = 0.6f};
+    saddle_frame_t frame;
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        saddle_command_t decoded;
+        command.turn_rate_rad_s = table[i].rate_rad_s;
+        saddle_wire_encode_command(&command, 1, &frame);
+        TEST_ASSERT_EQUAL_HEX8(table[i].byte, frame.data[7]);
+        saddle_wire_decode_command(frame.data, &decoded);
+        TEST_ASSERT_EQUAL_FLOAT(table[i].decoded_rad_s, decoded.turn_rate_rad_s);
+    }
+    command.turn_rate_rad_s = NAN;
+    saddle_wire_encode_command(&command, 1, &frame);
+    TEST_ASSERT_EQUAL_HEX8(0x80, frame.data[7]);
+    saddle_wire_decode_command(frame.data, &command);
+    TEST_ASSERT_TRUE(command.turn_rate_rad_s != command.turn_rate_rad_s);
+}
+
+/** Written out by hand from the DBC: 20000 (0.1 mrad), 1000 and -2500 (0.2 mm^-1 of a metre); then 0,
+ *  -500 and 2345. */
+static void test_way_bytes(void)
+{
+    const uint8_t way[7] = {0x07, 0x20, 0x4E, 0xE8, 0x03, 0x3C, 0xF6};
+    const uint8_t yaw[7] = {0x07, 0x00, 0x00, 0x0C, 0xFE, 0x29, 0x09};
+    const saddle_wire_health_t health = {.late_ticks = 0};
+    const saddle_output_t output = {.plan = {.valid = true,
+                                             .heading_rad = 2.0f,
+                                             .curvature_1_m = {0.2f, -0.5f},
+                                             .foot_yaw_rad = {0.0f, -0.05f},
+                                             .pelvis_yaw_rad = 0.2345f}};
+    saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
+    saddle_wire_encode_output(&output, &health, 7, frames);
+    TEST_ASSERT_EQUAL_HEX16(0x12E, frames[14].id);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(way, &frames[14].data[1], 7);
+    TEST_ASSERT_EQUAL_HEX16(0x12F, frames[15].id);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(yaw, &frames[15].data[1], 7);
 }
 
 static void test_a_measured_com_is_decoded(void)
@@ -338,8 +385,8 @@ static void assert_judgement(const saddle_output_t *output, const uint8_t expect
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_wire_encode_output(output, &health, 7, frames);
     for (size_t i = 0; i < 4u; ++i) {
-        TEST_ASSERT_EQUAL_HEX16(0x133u + i, frames[17u + i].id);
-        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[17u + i].data[1], 7);
+        TEST_ASSERT_EQUAL_HEX16(0x133u + i, frames[19u + i].id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[19u + i].data[1], 7);
     }
 }
 
@@ -384,8 +431,8 @@ static void assert_balance(const saddle_output_t *output, const uint8_t expected
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_wire_encode_output(output, &health, 7, frames);
     for (size_t i = 0; i < 4u; ++i) {
-        TEST_ASSERT_EQUAL_HEX16(0x137u + i, frames[21u + i].id);
-        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[21u + i].data[1], 7);
+        TEST_ASSERT_EQUAL_HEX16(0x137u + i, frames[23u + i].id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[23u + i].data[1], 7);
     }
 }
 
@@ -451,8 +498,8 @@ static void test_process_bytes(void)
     saddle_frame_t frames[SADDLE_WIRE_OUTPUT_FRAMES];
     saddle_wire_encode_output(&output, &health, 7, frames);
     for (size_t i = 0; i < 4u; ++i) {
-        TEST_ASSERT_EQUAL_HEX16(0x13Du + i, frames[25u + i].id);
-        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[25u + i].data[1], 7);
+        TEST_ASSERT_EQUAL_HEX16(0x13Du + i, frames[27u + i].id);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[i], &frames[27u + i].data[1], 7);
     }
 }
 
@@ -595,6 +642,8 @@ int main(void)
     RUN_TEST(test_decoding_leaves_ages_and_other_parts);
     RUN_TEST(test_plan_frames);
     RUN_TEST(test_a_command_is_decoded);
+    RUN_TEST(test_turning_rate_has_a_byte);
+    RUN_TEST(test_way_bytes);
     RUN_TEST(test_a_measured_com_is_decoded);
     RUN_TEST(test_events_and_pitch_bytes);
     RUN_TEST(test_a_plan_that_is_not_valid_has_no_numbers);

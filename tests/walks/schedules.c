@@ -722,38 +722,37 @@ static uint64_t random_duration_us(walk_t *walk)
                                                   : (uint64_t)random_in(&walk->random, 0.3e6, 8e6);
 }
 
-static float random_factor(walk_t *walk, double min, double max)
+static float random_factor(uint64_t *random, double min, double max)
 {
-    return (float)random_in(&walk->random, min, max);
+    return (float)random_in(random, min, max);
 }
 
-/* A body that passes the check; its ankles; one in three asymmetric. */
-static saddle_config_t random_config(walk_t *walk)
+saddle_config_t random_config(uint64_t *random)
 {
     saddle_config_t config;
     do {
-        config = saddle_config_default(random_factor(walk, 1.1, 2.1), 70.0f);
-        config.ankle = (saddle_ankle_t)(random_bits(&walk->random) % SADDLE_ANKLE_COUNT);
-        config.acceleration_m_s2 = random_factor(walk, 0.2, 3.0);
-        config.shift_time_s = random_factor(walk, 0.3, 1.5);
-        config.swing_clearance_m = random_factor(walk, 0.0, 0.1);
-        if (random_bits(&walk->random) % 3u == 0u) {
-            config.step_length_factor_left = random_factor(walk, 0.7, 1.3);
-            config.step_length_factor_right = random_factor(walk, 0.7, 1.3);
-            config.step_width_factor_left = random_factor(walk, 0.6, 1.9);
-            config.step_width_factor_right = random_factor(walk, 0.6, 1.9);
+        config = saddle_config_default(random_factor(random, 1.1, 2.1), 70.0f);
+        config.ankle = (saddle_ankle_t)(random_bits(random) % SADDLE_ANKLE_COUNT);
+        config.acceleration_m_s2 = random_factor(random, 0.2, 3.0);
+        config.shift_time_s = random_factor(random, 0.3, 1.5);
+        config.swing_clearance_m = random_factor(random, 0.0, 0.1);
+        if (random_bits(random) % 3u == 0u) {
+            config.step_length_factor_left = random_factor(random, 0.7, 1.3);
+            config.step_length_factor_right = random_factor(random, 0.7, 1.3);
+            config.step_width_factor_left = random_factor(random, 0.6, 1.9);
+            config.step_width_factor_right = random_factor(random, 0.6, 1.9);
         }
-        if (random_bits(&walk->random) % 2u == 0u) {
-            config.lateral_offset_m = random_factor(walk, -0.04, 0.04);
-            config.lateral_delay_rad = random_factor(walk, -1.0, 1.0);
-            config.vertical_offset_m = random_factor(walk, -0.03, 0.03);
-            config.vertical_delay_rad = random_factor(walk, -1.5, 1.5);
-            config.strike_share = random_factor(walk, 0.1, 0.5);
+        if (random_bits(random) % 2u == 0u) {
+            config.lateral_offset_m = random_factor(random, -0.04, 0.04);
+            config.lateral_delay_rad = random_factor(random, -1.0, 1.0);
+            config.vertical_offset_m = random_factor(random, -0.03, 0.03);
+            config.vertical_delay_rad = random_factor(random, -1.5, 1.5);
+            config.strike_share = random_factor(random, 0.1, 0.5);
         }
-        if (random_bits(&walk->random) % 2u == 0u) {
-            config.swing_begin = random_factor(walk, -0.6, 0.3);
-            config.swing_end = random_factor(walk, 0.8, 1.4);
-            config.swing_skew = random_factor(walk, 0.8, 2.5);
+        if (random_bits(random) % 2u == 0u) {
+            config.swing_begin = random_factor(random, -0.6, 0.3);
+            config.swing_end = random_factor(random, 0.8, 1.4);
+            config.swing_skew = random_factor(random, 0.8, 2.5);
         }
     } while (saddle_config_check(&config) != NULL);
     return config;
@@ -806,7 +805,7 @@ static int run_schedule(uint64_t seed)
     walk = (walk_t){.seed = seed, .random = seed * 0x9E3779B97F4A7C15u};
     walk.input.measurement = saddle_no_measurement();
     random_bits(&walk.random);
-    walk.config = random_config(&walk);
+    walk.config = random_config(&walk.random);
     if (saddle_init(&walk.context, &walk.config) != SADDLE_OK) {
         expect(&walk, false, "no beginning", 0.0, 0.0);
         return 1;

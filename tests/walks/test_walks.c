@@ -3,7 +3,9 @@
  *
  *   schedules [SEED [COUNT]]  random commands, watched at 1 kHz; alone, the campaign of
  *                             the tests; with a seed, that schedule (or COUNT from it on)
- *   day                       24 hours at random speeds against a twin in double precision
+ *   turns [SEED [COUNT]]      the same of random speeds and turning rates, on the ground
+ *   day                       24 hours at random speeds and turning rates against a twin in double
+ *                             precision
  *   constant                  an hour at each of 20 speeds against the closed form
  *   followers                 wearers who are where the plan is: the supervisor believes them
  *
@@ -18,7 +20,8 @@
 
 static int usage(void)
 {
-    fprintf(stderr, "test_walks: expected schedules [SEED [COUNT]], day, constant or followers\n");
+    fprintf(stderr, "test_walks: expected schedules [SEED [COUNT]], turns [SEED [COUNT]], day, "
+                    "constant or followers\n");
     return 2;
 }
 
@@ -30,7 +33,7 @@ static bool whole_number(const char *text, uint64_t *number)
     return *end == '\0' && *number > 0;
 }
 
-static int run_schedules(int argc, char **argv)
+static int run_schedules(int argc, char **argv, int (*check)(uint64_t first_seed, uint64_t count))
 {
     uint64_t seed = 1;
     uint64_t count = argc == 3 ? 1 : SCHEDULES_OF_A_TEST;
@@ -38,13 +41,16 @@ static int run_schedules(int argc, char **argv)
         (argc > 3 && !whole_number(argv[3], &count)) || argc > 4) {
         return usage();
     }
-    return check_schedules(seed, count) == 0 ? 0 : 1;
+    return check(seed, count) == 0 ? 0 : 1;
 }
 
 int main(int argc, char **argv)
 {
     if (argc >= 2 && strcmp(argv[1], "schedules") == 0) {
-        return run_schedules(argc, argv);
+        return run_schedules(argc, argv, check_schedules);
+    }
+    if (argc >= 2 && strcmp(argv[1], "turns") == 0) {
+        return run_schedules(argc, argv, check_turns);
     }
     if (argc == 2 && strcmp(argv[1], "day") == 0) {
         return check_day() == 0 ? 0 : 1;

@@ -15,6 +15,10 @@ int check_schedules(uint64_t first_seed, uint64_t count);
 int check_day(void);
 int check_constant(void);
 int check_followers(void);
+int check_turns(uint64_t first_seed, uint64_t count);
+
+/** A body that passes the check; its ankles; some asymmetric, some with a shape of their own. */
+saddle_config_t random_config(uint64_t *random);
 
 /** xorshift64*: state must not be 0. */
 static inline uint64_t random_bits(uint64_t *state)

@@ -162,14 +162,15 @@ static void read_intent(const saddle_planner_t *planner, const saddle_model_t *m
 static SADDLE_NOINLINE void plan_walk(saddle_context_t *context, const saddle_sensed_t *sensed,
                                       bool stop, uint32_t dt_us, saddle_output_t *output)
 {
-    static const saddle_command_t stand = {(uint8_t)SADDLE_COMMAND_STAND, 0.0f, 0.0f};
+    static const saddle_command_t stand = {(uint8_t)SADDLE_COMMAND_STAND, 0.0f, 0.0f, 0.0f};
     const bool feet_known = (sensed->faults & SADDLE_FAULTS_FEET) == 0u;
     output->limits |= stop ? (uint32_t)SADDLE_LIMIT_SAFE_STOP : 0u;
     output->limits |=
         saddle_planner_update(&context->planner, &context->model, stop ? &stand : &context->command,
                               feet_known ? sensed->sampled : NULL, dt_us);
     output->limits |= saddle_plan_write(&context->planner, &context->model, &output->plan);
-    saddle_remember_plan(&context->past, &output->plan, dt_us);
+    saddle_remember_plan(&context->past, &output->plan, context->planner.cycle.way.walked_nm,
+                         dt_us);
 }
 
 static bool is_old(const saddle_measurement_t *sampled)
@@ -179,8 +180,8 @@ static bool is_old(const saddle_measurement_t *sampled)
 }
 
 /* The measured posture, as of now, against the plan. [E46] */
-static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_sensed_t *sensed,
-                                      saddle_output_t *output)
+static SADDLE_NOINLINE void compare(saddle_context_t *context, const saddle_sensed_t *sensed,
+                                    saddle_output_t *output)
 {
     saddle_supervisor_t *supervisor = &context->supervisor;
     const saddle_model_t *model = &context->model;
@@ -195,6 +196,20 @@ static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_se
         output->faults |= saddle_supervisor_update(supervisor, model, sensed, &intent, output);
     }
     output->walk = supervisor->learning.walk;
+}
+
+/* Along the way, as the plan is there. [E47] */
+static SADDLE_NOINLINE void supervise(saddle_context_t *context, const saddle_sensed_t *sensed,
+                                      saddle_output_t *output)
+{
+    if (context->planner.cycle.way.bent) {
+        saddle_measurement_t along;
+        saddle_planner_along(&context->planner, &context->model, sensed->sampled, &along);
+        const saddle_sensed_t unbent = {&along, &along, sensed->faults, sensed->dt_s};
+        compare(context, &unbent, output);
+    } else {
+        compare(context, sensed, output);
+    }
 }
 
 /* [E45] From this tick on the plan leads to where the wearer is to land. Neither the swing foot's place
@@ -244,6 +259,7 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     plan_walk(context, &sensed, stop, dt_us, output);
     supervise(context, &sensed, output);
     move_landing(context, &output->plan);
+    saddle_plan_bend(&context->planner.cycle.way, &context->model, &output->plan);
     return saddle_output_finite(output) ? SADDLE_OK : refuse(output, SADDLE_ERROR_NUMBER);
 }
 
@@ -349,6 +365,7 @@ saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us
     saddle_copy(&planner, &context->planner, sizeof planner);
     advance_far(&planner, context, (uint32_t)(time_us - context->last_time_us));
     (void)saddle_plan_write(&planner, &context->model, plan);
+    saddle_plan_bend(&planner.cycle.way, &context->model, plan);
     return saddle_plan_finite(plan) ? SADDLE_OK : refuse_plan(plan, SADDLE_ERROR_NUMBER);
 }
 
@@ -369,7 +386,7 @@ saddle_status_t saddle_reference_after(const saddle_context_t *context, const sa
         !(after_s >= 0.0f && after_s <= REFERENCE_AHEAD_MAX_S)) {
         return SADDLE_ERROR_TIME;
     }
-    saddle_reference(&context->model, plan, after_s, reference);
+    saddle_reference_after_plan(&context->model, plan, after_s, reference);
     return SADDLE_OK;
 }
 

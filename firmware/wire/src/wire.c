@@ -18,15 +18,19 @@
 #define IDLE_SESSION_TICKS 25u
 
 /** A frame's bytes 0 to 7 are one number of 64 bits, byte 0 the lowest. These are a signal's part of
- *  it: of a number, or of a count or code, whose higher bits are dropped. */
+ *  it: of a number of 16 or 8 bits, or of a count or code, whose higher bits are dropped. */
 #define NUMBER(signal, valid, value)                                           \
     ((uint64_t)raw_of((valid), (value), 0.5f * SIGNALS[SIGNAL_##signal].scale) \
+     << SIGNALS[SIGNAL_##signal].start)
+#define SHORT_NUMBER(signal, value)                                         \
+    ((uint64_t)short_raw_of((value), 0.5f * SIGNALS[SIGNAL_##signal].scale) \
      << SIGNALS[SIGNAL_##signal].start)
 #define CODE(signal, value) \
     ((uint64_t)((value) & mask_of(SIGNAL_##signal)) << SIGNALS[SIGNAL_##signal].start)
 
 /** And back. */
 #define NUMBER_IN(signal, bits) number_of(&SIGNALS[SIGNAL_##signal], (bits))
+#define SHORT_NUMBER_IN(signal, bits) short_number_of(&SIGNALS[SIGNAL_##signal], (bits))
 #define CODE_IN(signal, bits) \
     ((uint32_t)((bits) >> SIGNALS[SIGNAL_##signal].start) & mask_of(SIGNAL_##signal))
 
@@ -58,6 +62,22 @@ static SADDLE_NOINLINE uint32_t raw_of(bool valid, float value, float half_step)
         return (uint16_t)NOT_AVAILABLE;
     }
     return (uint16_t)(value < 0.0f ? -INT16_MAX : INT16_MAX);
+}
+
+/** In 8 bits. */
+static uint8_t short_raw_of(float value, float half_step)
+{
+    const int16_t raw = (int16_t)(uint16_t)raw_of(true, value, half_step);
+    if (raw == NOT_AVAILABLE) {
+        return (uint8_t)INT8_MIN;
+    }
+    return (uint8_t)(raw > INT8_MAX ? INT8_MAX : raw < -INT8_MAX ? -INT8_MAX : raw);
+}
+
+static float short_number_of(const signal_t *signal, uint64_t bits)
+{
+    const int8_t raw = (int8_t)(uint8_t)(bits >> signal->start);
+    return raw == INT8_MIN ? NAN : (float)raw * signal->scale;
 }
 
 static float number_of(const signal_t *signal, uint64_t bits)
@@ -321,6 +341,7 @@ void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_c
     command->mode = (uint8_t)CODE_IN(COMMAND_MODE, bits);
     command->speed_m_s = NUMBER_IN(COMMAND_SPEED, bits);
     command->heel_strike_rad = NUMBER_IN(COMMAND_HEEL_STRIKE, bits);
+    command->turn_rate_rad_s = SHORT_NUMBER_IN(COMMAND_TURN_RATE, bits);
 }
 
 uint32_t saddle_wire_decode_time(const uint8_t data[SADDLE_WIRE_LENGTH])
@@ -444,6 +465,19 @@ static void encode_reference(const saddle_plan_t *plan, uint8_t counter, saddle_
            NUMBER(PLAN_LAST_STEP_X, valid, plan->last_step_m.x) |
                NUMBER(PLAN_LAST_STEP_Y, valid, plan->last_step_m.y) |
                NUMBER(PLAN_LAST_STEP_WIDTH, valid, plan->step_width_m));
+}
+
+static void encode_way(const saddle_plan_t *plan, uint8_t counter, saddle_frame_t *frames)
+{
+    const bool valid = plan->valid;
+    ENCODE(&frames[0], PLAN_WAY, counter,
+           NUMBER(PLAN_WAY_HEADING, valid, plan->heading_rad) |
+               NUMBER(PLAN_WAY_CURVATURE_BEHIND, valid, plan->curvature_1_m[0]) |
+               NUMBER(PLAN_WAY_CURVATURE_AHEAD, valid, plan->curvature_1_m[1]));
+    ENCODE(&frames[1], PLAN_YAW, counter,
+           NUMBER(PLAN_YAW_LEFT, valid, plan->foot_yaw_rad[SADDLE_LEFT]) |
+               NUMBER(PLAN_YAW_RIGHT, valid, plan->foot_yaw_rad[SADDLE_RIGHT]) |
+               NUMBER(PLAN_YAW_PELVIS, valid, plan->pelvis_yaw_rad));
 }
 
 static bool holds(const saddle_scores_t *scores, saddle_valid_t result)
@@ -577,13 +611,14 @@ void saddle_wire_encode_output(const saddle_output_t *output, const saddle_wire_
     encode_step_plan(&output->plan, counter, &frames[5]);
     encode_events_plan(&output->plan, counter, &frames[8]);
     encode_reference(&output->plan, counter, &frames[10]);
-    encode_scores(&output->scores, output->faults, counter, &frames[14]);
-    encode_foresight(&output->scores, &output->verdict, counter, &frames[17]);
-    encode_verdict(&output->verdict, counter, &frames[19]);
-    encode_balance(&output->verdict, counter, &frames[21]);
-    encode_learned_walk(&output->walk, counter, &frames[22]);
-    encode_process(health, counter, &frames[25]);
-    encode_health(output, health, counter, &frames[28]);
+    encode_way(&output->plan, counter, &frames[14]);
+    encode_scores(&output->scores, output->faults, counter, &frames[16]);
+    encode_foresight(&output->scores, &output->verdict, counter, &frames[19]);
+    encode_verdict(&output->verdict, counter, &frames[21]);
+    encode_balance(&output->verdict, counter, &frames[23]);
+    encode_learned_walk(&output->walk, counter, &frames[24]);
+    encode_process(health, counter, &frames[27]);
+    encode_health(output, health, counter, &frames[30]);
 }
 
 void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter,
@@ -593,7 +628,8 @@ void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter
            CODE(COMMAND_MODE, limited(command->mode, 15u)) |
                NUMBER(COMMAND_SPEED, true, command->speed_m_s) |
                NUMBER(COMMAND_HEEL_STRIKE, true, command->heel_strike_rad) |
-               CODE(COMMAND_WIRE_VERSION, SADDLE_WIRE_VERSION));
+               CODE(COMMAND_WIRE_VERSION, SADDLE_WIRE_VERSION) |
+               SHORT_NUMBER(COMMAND_TURN_RATE, command->turn_rate_rad_s));
 }
 
 void saddle_wire_encode_time(uint32_t sampled_us, uint8_t number, saddle_frame_t *frame)

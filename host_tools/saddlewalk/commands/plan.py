@@ -16,6 +16,7 @@ from saddlewalk.outputs import OutputFile, add_output
 from saddlewalk.table import Cell, write_table
 
 EVENT_COLUMNS = "mode time_to_heel_strike_s time_to_toe_off_s event event_t_s".split()
+TURN_COLUMNS = "heading_rad left_yaw_rad right_yaw_rad".split()
 SHORTEST_DT_S = 1e-5
 
 
@@ -109,20 +110,27 @@ def _plan_schedule(args: argparse.Namespace) -> int:
     core = Core(load_config(args, args.ankle))
     walked = list(_until_the_end(args, changes, core))
     rows = (_schedule_row(core, instant) for instant in walked)
-    write_table(args.out, [*COLUMNS, *EVENT_COLUMNS], rows)
-    infeasible = library().SADDLE_LIMIT_SPEED
-    limited = {instant.wish for instant in walked if instant.output.limits & infeasible}
-    for wish in sorted(limited, key=lambda wish: wish.line):
-        _note(
-            f"{args.schedule}: line {wish.line}, speed_m_s: {wish.speed_m_s:g} is not feasible "
-            "for this body: limited"
-        )
+    write_table(args.out, [*COLUMNS, *EVENT_COLUMNS, *TURN_COLUMNS], rows)
+    _note_limited(args, walked, library().SADDLE_LIMIT_SPEED, "speed_m_s", "for this body")
+    _note_limited(args, walked, library().SADDLE_LIMIT_TURN, "turn_rad_s", "at this speed")
     _note_angles(args, functools.reduce(operator.or_, (i.output.limits for i in walked)))
     if args.picture is not None:
         from saddlewalk.pictures.schedule import draw_schedule
 
         draw_schedule(args.picture, changes, walked)
     return 0
+
+
+def _note_limited(
+    args: argparse.Namespace, walked: list[Any], limit: int, column: str, reason: str
+) -> None:
+    """Name each row of the schedule that the core could not follow."""
+    limited = {instant.wish for instant in walked if instant.output.limits & limit}
+    for wish in sorted(limited, key=lambda wish: wish.line):
+        _note(
+            f"{args.schedule}: line {wish.line}, {column}: {getattr(wish, column):g} is not "
+            f"feasible {reason}: limited"
+        )
 
 
 def _until_the_end(args: argparse.Namespace, changes: list[Any], core: Any) -> Iterator[Any]:
@@ -157,6 +165,7 @@ def _note(text: str) -> None:
 def _schedule_row(core: Any, instant: Any) -> list[Cell]:
     from saddlewalk.contract import MODES, TIME_MAX_S
     from saddlewalk.core import library
+    from saddlewalk.planning.ground import yaws_of
     from saddlewalk.planning.steady import COLUMNS, row_of
 
     plan = instant.output.plan
@@ -174,4 +183,6 @@ def _schedule_row(core: Any, instant: Any) -> list[Cell]:
         *(time_s if time_s < TIME_MAX_S else None for time_s in times_s),
         " ".join(event.name for event in instant.events),
         " ".join(f"{event.t_s:.6f}" for event in instant.events),
+        plan.heading_rad,
+        *yaws_of(plan),
     ]

@@ -69,8 +69,8 @@ def output_of(messages: Messages) -> Any:
     """The saddle_output_t as far as a wearer needs it: plan, XCoM deviation and recovery step."""
     output = core.ffi().new("saddle_output_t *")
     plan, verdict = output.plan, output.verdict
-    step, events, pendulum = (
-        messages[f"PLAN_{part}"] for part in ("STEP", "EVENTS", "REFERENCE_COM")
+    step, events, pendulum, way = (
+        messages[f"PLAN_{part}"] for part in ("STEP", "EVENTS", "REFERENCE_COM", "WAY")
     )
     plan.valid, plan.mode = True, int(events["MODE"])
     plan.support, plan.phase = int(step["SUPPORT"]), int(step["PHASE"])
@@ -81,6 +81,9 @@ def output_of(messages: Messages) -> Any:
     plan.time_to_toe_off_s = events["TIME_TO_TOE_OFF"]
     plan.leg_length_m = messages["PLAN_LANDING"]["LEG_LENGTH"]
     plan.foot_pitch_rad = [messages["PLAN_PITCH"][side] for side in ("LEFT", "RIGHT")]
+    plan.foot_yaw_rad = [messages["PLAN_YAW"][side] for side in ("LEFT", "RIGHT")]
+    plan.pelvis_yaw_rad, plan.heading_rad = messages["PLAN_YAW"]["PELVIS"], way["HEADING"]
+    plan.curvature_1_m = [way[f"CURVATURE_{part}"] for part in ("BEHIND", "AHEAD")]
     for vector, name in (
         (plan.com_m, "PLAN_COM"),
         (plan.com_velocity_m_s, "PLAN_COM_VELOCITY"),

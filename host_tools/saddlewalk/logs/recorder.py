@@ -27,7 +27,7 @@ LCM_QUEUE = 2000
 LAST_WORDS_S = 0.2  # for messages that are still in transit at the end
 CHANNELS = tuple(
     f"SADDLEWALK_{part}"
-    for part in "CONFIG INPUT PLAN SCORES VERDICT BALANCE BOS HEALTH STATUS TRUTH".split()
+    for part in "CONFIG INPUT TURN PLAN SCORES VERDICT BALANCE BOS WAY HEALTH STATUS TRUTH".split()
 )
 
 _POINTS = "com_x_m com_y_m com_z_m left_x_m left_y_m left_z_m right_x_m right_y_m right_z_m".split()

@@ -22,7 +22,7 @@ from saddlewalk.transport.lcm_log import Event
 TIME_MAX_US = 2**63 - 1  # of LCM's signed times
 GAPS_MAX = 20  # gaps that are listed separately
 # Channels that older firmware did not publish: a log without them is still complete.
-ADDED_CHANNELS = {"SADDLEWALK_BALANCE"}
+ADDED_CHANNELS = {"SADDLEWALK_BALANCE", "SADDLEWALK_WAY"}
 HEALTH_FIELDS = ("tick", "status", "limits", "faults")  # the core's; the others are the host's
 _PACKED = {"float": ">f", "double": ">d", "int8_t": ">b", "int32_t": ">i", "int64_t": ">q"}
 
@@ -135,6 +135,8 @@ def logged_ticks(events: Iterable[Event]) -> Iterator[LoggedTick]:
                 yield tick
             tick, config = _begun(event, config), None
         elif tick and _utime_us(event) == tick.inputs.time_us:
+            if event.channel == "SADDLEWALK_TURN":
+                _add_turn(event, tick.inputs)
             tick.outputs[event.channel] = event
     if tick:
         yield tick
@@ -154,6 +156,15 @@ def _begun(event: Event, config: Event | None) -> LoggedTick:
     if config is not None and _utime_us(config) != inputs.time_us:
         config = None
     return LoggedTick(number[0], inputs, None if config is None else decode(config))
+
+
+def _add_turn(event: Event, inputs: Any) -> None:
+    """Without it, as in older logs, the walk is straight."""
+    if not library().saddle_lcm_decode_turn(event.data, len(event.data), inputs):
+        raise UserError(
+            f"a message of {len(event.data)} bytes on SADDLEWALK_TURN is not a turn_t as "
+            f"saddlewalk {__version__} has it"
+        )
 
 
 def _utime_us(event: Event) -> int:

@@ -1,7 +1,7 @@
 """A schedule of walking speeds, and the walk from standing that follows it.
 
-A schedule is a CSV file with the columns `t_s` (from 0, increasing) and `speed_m_s` (0: stand):
-each speed is commanded from its time on.
+A schedule is a CSV file with the columns `t_s` (from 0, increasing), `speed_m_s` (0: stand) and, if
+the walk turns, `turn_rad_s` (to the left): each row is commanded from its time on.
 """
 
 import math
@@ -13,9 +13,11 @@ from typing import Any
 from saddlewalk.contract import SIDES, STARTING, STOPPING, TICK_S
 from saddlewalk.core import Command, Core, Measurement
 from saddlewalk.errors import UserError
-from saddlewalk.table import read_series
+from saddlewalk.table import read_any_series
 
 LONGEST_S = 1e6
+FASTEST_TURN_RAD_S = 10.0
+_COLUMNS = (("t_s", "speed_m_s", "turn_rad_s"), ("t_s", "speed_m_s"))
 _SAME_TIME_S = 1e-9
 
 Speeds = list[tuple[float, float]]  # (start time, s, from 0; speed, m/s, 0: stand)
@@ -40,6 +42,7 @@ class SpeedChange:
     line: int
     from_s: float
     speed_m_s: float
+    turn_rad_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -63,15 +66,21 @@ class Instant:
 def read_schedule(source: str) -> list[SpeedChange]:
     """Raises UserError naming the file, the line and the column that is wrong."""
     changes: list[SpeedChange] = []
-    for line, cells in read_series(source, ("t_s", "speed_m_s"), LONGEST_S):
+    for line, cells in read_any_series(source, _COLUMNS, LONGEST_S):
         t_s, speed_m_s = cells["t_s"], cells["speed_m_s"]
+        turn_rad_s = cells.get("turn_rad_s", 0.0)
         if not changes and t_s != 0:
             raise UserError(f"{source}: line {line}, t_s: {t_s:g} must be 0: where the walk begins")
         if not 0 <= speed_m_s < math.inf:
             raise UserError(
                 f"{source}: line {line}, speed_m_s: {speed_m_s:g} must be 0 or more, finite"
             )
-        changes.append(SpeedChange(line, t_s, speed_m_s))
+        if not abs(turn_rad_s) <= FASTEST_TURN_RAD_S:
+            raise UserError(
+                f"{source}: line {line}, turn_rad_s: {turn_rad_s:g} must be in "
+                f"-{FASTEST_TURN_RAD_S:g} to {FASTEST_TURN_RAD_S:g}"
+            )
+        changes.append(SpeedChange(line, t_s, speed_m_s, turn_rad_s))
     if not changes:
         raise UserError(f"{source}: no rows: give at least 0 in t_s and a speed_m_s")
     return changes
@@ -90,7 +99,7 @@ def walk(
     while True:
         t_s = tick * tick_s
         wish = changes[bisect_right(starts_s, t_s + _SAME_TIME_S) - 1]
-        command = Command(wish.speed_m_s, heel_strike_rad)
+        command = Command(wish.speed_m_s, heel_strike_rad, wish.turn_rad_s)
         output = core.tick(round(t_s * 1e6), command, Measurement())
         if before is not None:
             since_s = t_s - tick_s

@@ -6,6 +6,7 @@ from typing import Any
 
 from saddlewalk.contract import TICK_S
 from saddlewalk.core import Command, Measurement
+from saddlewalk.planning.ground import place_of, turned
 from saddlewalk.table import Cell
 
 COLUMNS = (
@@ -34,26 +35,20 @@ def walk(
 
 
 def row_of(t_s: float, plan: Any, scores: Any) -> list[Cell]:
-    """The cells of COLUMNS: a saddle_plan_t and its saddle_scores_t."""
-    origin_m = plan.origin_x_nm * 1e-9
-    com, velocity = plan.com_m, plan.com_velocity_m_s
+    """The cells of COLUMNS: a saddle_plan_t and its saddle_scores_t, from where the way began."""
     left, right = plan.foot_m
     return [
         t_s,
         plan.phase,
         2.0 * math.pi * plan.stride_count + plan.theta_rad,
         "right" if plan.support else "left",
-        origin_m + com.x,
-        com.y,
-        com.z,
-        velocity.x,
-        velocity.y,
-        velocity.z,
-        origin_m + left.x,
-        left.y,
+        *place_of(plan, plan.com_m),
+        plan.com_m.z,
+        *turned(plan, plan.com_velocity_m_s),
+        plan.com_velocity_m_s.z,
+        *place_of(plan, left),
         left.z,
-        origin_m + right.x,
-        right.y,
+        *place_of(plan, right),
         right.z,
         plan.leg_length_m,
         plan.toe_off_rad,
@@ -63,6 +58,5 @@ def row_of(t_s: float, plan: Any, scores: Any) -> list[Cell]:
         scores.s_sw,
         scores.mos_com_m,
         scores.mos_xcom_m,
-        scores.gravity_n.x,
-        scores.gravity_n.y,
+        *turned(plan, scores.gravity_n),
     ]

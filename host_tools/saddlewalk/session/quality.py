@@ -51,6 +51,7 @@ LIMIT_WORDS = {
     "FEET": "no plan can start or continue from the measured feet",
     "TICK_GAP": "a late tick: the plan advanced by less than the elapsed time",
     "SAFE_STOP": "inputs were lost: the plan ended the walk",
+    "TURN": "the commanded turning rate is more than a walk at that speed bears",
 }
 
 

@@ -1,8 +1,9 @@
 """Saddlewalk's CAN messages, as `firmware/wire/saddlewalk.dbc` lays them out.
 
 The counterpart of `firmware/wire`, equal to it in every bit: numbers are scaled in single
-precision, saturate at the ends of their range, and are -32768 on the wire and NaN here when not
-available. `<saddlewalk/wire.h>` states the frame layout and the rule of the alive counter.
+precision, saturate at the ends of their range, and are -32768 (-128 of 8 bits) on the wire and NaN
+here when not available. `<saddlewalk/wire.h>` states the frame layout and the rule of the alive
+counter.
 """
 
 import math
@@ -21,8 +22,6 @@ COUNTERS = 16
 ROUNDS = 8
 TIMES = 1 << 32  # microseconds after which MEASURED_TIME wraps
 COUNTER_STEP_MAX = 4
-NOT_AVAILABLE = -32768
-_RAW_MAX = 32767
 
 _database = cantools.database.load_file(paths.source("firmware/wire/saddlewalk.dbc"))
 assert isinstance(_database, cantools.database.can.Database)
@@ -58,14 +57,15 @@ class _Signal:
     def __init__(self, signal: cantools.database.can.Signal) -> None:
         self.is_number = signal.is_signed
         self._scale = np.float32(signal.scale)
-        self._limit = float(np.float32(_RAW_MAX) * self._scale)
+        self._not_available = -(1 << (signal.length - 1))
+        self._limit = float(np.float32(-1 - self._not_available) * self._scale)
         self._code_max = (1 << signal.length) - 1
 
     def raw(self, value: float | None) -> int:
         if not self.is_number:
             return min(max(int(value or 0), 0), self._code_max)
         if value is None or not math.isfinite(value):
-            return NOT_AVAILABLE
+            return self._not_available
         limited = np.float32(min(max(value, -self._limit), self._limit))
         scaled = float(limited / self._scale)
         return int(math.copysign(math.floor(abs(scaled) + 0.5), scaled))
@@ -73,7 +73,7 @@ class _Signal:
     def value(self, raw: int) -> float:
         if not self.is_number:
             return raw
-        return math.nan if raw == NOT_AVAILABLE else float(np.float32(raw) * self._scale)
+        return math.nan if raw == self._not_available else float(np.float32(raw) * self._scale)
 
 
 class _Message:
@@ -111,6 +111,7 @@ _messages = [_Message(message) for message in _database.messages]
 _by_name = {message.name: message for message in _messages}
 _by_id = {message.id: message for message in _messages}
 _OWN = {"CRC", "COUNTER", "ROUND", "WIRE_VERSION"}
+_IF_MISSING: dict[str, float | None] = {"TURN_RATE": 0.0}
 
 
 class Sender:
@@ -121,7 +122,7 @@ class Sender:
 
     def frame(self, name: str, **values: float | None) -> can.Message:
         """The next frame of a message, with every signal but CRC, COUNTER, ROUND and WIRE_VERSION
-        given.
+        given; without TURN_RATE a COMMAND goes straight on.
 
         Numbers in SI units and rad; None or not finite is sent as not available. Raises ValueError
         for a name that the database does not have or a signal that is missing or too many.
@@ -130,6 +131,7 @@ class Sender:
             raise ValueError(f"message {name} is not one of {', '.join(_by_name)}")
         message = _by_name[name]
         expected = message.signals.keys() - _OWN
+        values = {name: _IF_MISSING[name] for name in expected & _IF_MISSING.keys()} | values
         if values.keys() != expected:
             raise ValueError(f"{name} has {sorted(values)}: give {sorted(expected)}")
         sent = self._sent.get(name, 0)

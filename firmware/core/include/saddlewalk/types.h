@@ -67,6 +67,8 @@ typedef struct {
     float strike_share; /**< of a step, from passing the stance foot to the heel strike; 0: by the
                              foot's angle, [E38] */
     float acceleration_m_s2;        /**< largest change of the walking speed */
+    float turn_acceleration_rad_s2; /**< largest change of the turning rate, [E48] */
+    float turn_step_max_rad;        /**< largest turn in one step, [E48] */
     float shift_time_s;             /**< of the weight to the first stance leg, and back */
     float step_length_factor_left;  /**< steps that the left foot makes; 1: symmetric, [E4] */
     float step_length_factor_right; /**< that the right foot makes */
@@ -151,11 +153,13 @@ typedef enum {
 #define SADDLE_SPEED_FLOOR_M_S 0.01f
 
 /** What is asked of the planner, at any time. The speed is approached at acceleration_m_s2; the
- *  heel-strike angle holds from the heel strike after the next. */
+ *  heel-strike angle holds from the heel strike after the next, the turning rate from the next landing
+ *  on, approached at turn_acceleration_rad_s2. */
 typedef struct {
     uint8_t mode;          /**< saddle_command_mode_t; a stand does not need the numbers below */
-    float speed_m_s;       /**< along x */
+    float speed_m_s;       /**< along the way */
     float heel_strike_rad; /**< foot to ground when the heel strikes; erf ankles only */
+    float turn_rate_rad_s; /**< of the way's heading, to the left; 0: straight on, [E48] */
 } saddle_command_t;
 
 /* ---- measurement --------------------------------------------------------------------------- */
@@ -177,7 +181,8 @@ typedef struct {
     uint32_t age_us;     /**< at the time of the tick, or SADDLE_AGE_NEVER_US */
 } saddle_measured_foot_t;
 
-/** Each foot and the CoM have their own age. */
+/** Each foot and the CoM have their own age. The axes are those of the wearer's heading, which turn with
+ *  the pelvis: a device that has only its joints and its tilt measures in them. */
 typedef struct {
     saddle_measured_com_t com;
     saddle_measured_foot_t foot[2]; /**< by saddle_side_t */
@@ -234,8 +239,10 @@ typedef enum {
     SADDLE_LIMIT_TOE_OFF = 1u << 2,     /**< ankle angle outside the geometry, [E13] [E25] */
     SADDLE_LIMIT_FEET = 1u << 3,        /**< measured feet that no plan can start or go on from */
     SADDLE_LIMIT_TICK_GAP = 1u << 4,    /**< late tick: the plan advanced by tick_max_s only */
-    SADDLE_LIMIT_SAFE_STOP = 1u << 5    /**< inputs were lost: the walk stops until
+    SADDLE_LIMIT_SAFE_STOP = 1u << 5,   /**< inputs were lost: the walk stops until
                                              they have been good for resume_time_s */
+    SADDLE_LIMIT_TURN = 1u << 6         /**< commanded turning rate more than a walk at that speed
+                                             bears, [E48] */
 } saddle_limit_t;
 
 /** Longest time that is predicted; what never comes is said to come then. */
@@ -251,8 +258,10 @@ typedef struct {
     float load[2];        /**< share of the weight that each foot carries; their sum is 1 */
 } saddle_reference_t;
 
-/** The plan at one instant. x is measured from the CoP of the planned stance foot, which lies at
- *  origin_x_nm from the first stance foot; y from the walking line; z from the ground. */
+/** The plan at one instant. x is measured from the CoP of the planned stance foot in its heading, y from
+ *  the walking line, z from the ground. Beside the stance foot the line is at origin_x_nm, origin_y_nm
+ *  from where it began, beside the first stance foot, in the heading of that. A foot that stands neither
+ *  moves nor turns; with each landing the axes turn to the heading of the foot that has landed. */
 typedef struct {
     bool valid;            /**< false: the tick failed and all else is 0 */
     uint8_t mode;          /**< saddle_mode_t */
@@ -262,11 +271,18 @@ typedef struct {
     uint32_t stride_count; /**< times the left foot via point was passed since the start */
     float theta_rad;       /**< gait phase within the stride, [0, 2 pi), [E8] */
     int64_t origin_x_nm;   /**< walked distance to the stance foot; integer, so it never drifts */
+    int64_t origin_y_nm;   /**< and to the left; 0 until the way turns, [E47] */
+    float heading_rad; /**< of x, to the left of where the way began, [-pi, pi]; from an integer, so
+                            it never drifts */
+    float
+        curvature_1_m[2]; /**< of the way behind and ahead of the stance foot, to the left, [E47] */
     float speed_m_s, step_length_m, step_width_m; /**< of the running quarter */
     float acceleration_m_s2;                      /**< rate of change of that speed */
     saddle_vec3_t com_m, com_velocity_m_s;
     saddle_vec3_t foot_m[2];            /**< middles of the soles */
     float foot_pitch_rad[2];            /**< sole to ground, positive heel up */
+    float foot_yaw_rad[2];              /**< of the foot, to the left of x; 0 of the stance foot */
+    float pelvis_yaw_rad;               /**< likewise: along the way beside the CoM */
     saddle_vec3_t swing_velocity_m_s;   /**< of the foot that is not in support */
     float leg_length_m;                 /**< stance leg */
     float knee_flexion_m;               /**< stance leg shorter than with a straight knee by this,

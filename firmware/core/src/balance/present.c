@@ -33,9 +33,9 @@ static uint32_t slot(const saddle_past_t *past, uint32_t back)
     return (past->newest + SADDLE_PAST_PLANS - back) % SADDLE_PAST_PLANS;
 }
 
-static void keep(saddle_past_plan_t *kept, const saddle_plan_t *plan)
+static void keep(saddle_past_plan_t *kept, const saddle_plan_t *plan, uint32_t walked_nm)
 {
-    kept->origin_x_nm = (uint32_t)plan->origin_x_nm;
+    kept->walked_nm = walked_nm;
     kept->until_next_us = 0;
     kept->support = plan->support;
     for (int side = 0; side < 2; side++) {
@@ -47,7 +47,8 @@ static void keep(saddle_past_plan_t *kept, const saddle_plan_t *plan)
     kept->xcom_m = plan->reference.xcom_m;
 }
 
-void saddle_remember_plan(saddle_past_t *past, const saddle_plan_t *plan, uint32_t dt_us)
+void saddle_remember_plan(saddle_past_t *past, const saddle_plan_t *plan, uint32_t walked_nm,
+                          uint32_t dt_us)
 {
     saddle_past_plan_t *last = &past->plans[slot(past, 1u)];
     if (past->count > 1u && last->until_next_us < APART_US) {
@@ -57,7 +58,7 @@ void saddle_remember_plan(saddle_past_t *past, const saddle_plan_t *plan, uint32
         past->newest = (uint8_t)((past->newest + 1u) % SADDLE_PAST_PLANS);
         past->count = (uint8_t)(past->count < SADDLE_PAST_PLANS ? past->count + 1u : past->count);
     }
-    keep(&past->plans[slot(past, 0u)], plan);
+    keep(&past->plans[slot(past, 0u)], plan, walked_nm);
 }
 
 static saddle_vec2_t between_m(saddle_vec2_t later_m, saddle_vec2_t earlier_m, float share)
@@ -68,7 +69,7 @@ static saddle_vec2_t between_m(saddle_vec2_t later_m, saddle_vec2_t earlier_m, f
 /* Its stance foot from the newest's: in so short a time less than 2 m. */
 static saddle_vec2_t origin_m(const saddle_past_plan_t *plan, const saddle_past_plan_t *newest)
 {
-    const uint32_t ahead_nm = plan->origin_x_nm - newest->origin_x_nm;
+    const uint32_t ahead_nm = plan->walked_nm - newest->walked_nm;
     return (saddle_vec2_t){1.0e-9f * (float)(int32_t)ahead_nm, 0.0f};
 }
 

@@ -28,10 +28,13 @@ static float sum_of_plan(const saddle_plan_t *plan)
                        plan->foot_pitch_rad[SADDLE_LEFT] + plan->foot_pitch_rad[SADDLE_RIGHT] +
                        sum_of_3(plan->swing_velocity_m_s) + plan->toe_off_rad +
                        plan->heel_strike_rad;
+    const float way = plan->heading_rad + plan->curvature_1_m[0] + plan->curvature_1_m[1] +
+                      plan->foot_yaw_rad[SADDLE_LEFT] + plan->foot_yaw_rad[SADDLE_RIGHT] +
+                      plan->pelvis_yaw_rad;
     const float events = plan->time_to_via_point_s + plan->time_to_heel_strike_s +
                          plan->time_to_toe_off_s + sum_of_2(plan->landing_m) +
                          sum_of_2(plan->last_step_m);
-    return body + feet + events + sum_of_reference(&plan->reference);
+    return body + feet + way + events + sum_of_reference(&plan->reference);
 }
 
 static float sum_of_scores(const saddle_scores_t *scores)

@@ -18,6 +18,14 @@
 #define POSITION_MAX (((int64_t)2 << 40) * POSITION_PER_2_POW_MINUS_40_M)
 #define SPEED_MAX ((int64_t)4 << 42)
 
+/* pi and 2 pi, in 2^-42 rad. */
+#define HALF_TURN ((int64_t)13816870609431)
+#define TURN ((int64_t)27633741218861)
+
+#define WAY_MAX_NM ((int64_t)1999999999)
+#define Q31_M_PER_NM 2305843009u /* times 2^30 */
+#define HALF ((uint64_t)1 << 29)
+
 #define RATE_MAX_M_S2 15.9999990f /* the largest float below 16 */
 #define TIME_MAX_S 1.99999988f    /* the largest float below 2 */
 #define DT_MAX_US 10000000u
@@ -99,16 +107,44 @@ uint32_t saddle_time_from_s(float time_s)
     return (uint32_t)(in_range_s * TWO_POW_31);
 }
 
-/* In two parts, whose products have 64 bits. */
-saddle_fixed_t saddle_distance(saddle_fixed_t speed, uint32_t time_q31)
+/* In 2^-42, of a value in that and a factor in 2^-31: in two parts, whose products have 64 bits. */
+static uint64_t product(saddle_fixed_t value, uint32_t factor_q31)
 {
-    const uint64_t in_range = speed > 0 ? (uint64_t)(speed < SPEED_MAX ? speed : SPEED_MAX) : 0u;
+    const uint64_t in_range = value > 0 ? (uint64_t)(value < SPEED_MAX ? value : SPEED_MAX) : 0u;
     const uint32_t upper = (uint32_t)(in_range >> 21);
     const uint32_t lower = (uint32_t)in_range & ((1u << 21) - 1u);
-    const uint64_t distance_q42_m =
-        ((uint64_t)time_q31 * upper >> 10) + ((uint64_t)time_q31 * lower >> 31);
+    return ((uint64_t)factor_q31 * upper >> 10) + ((uint64_t)factor_q31 * lower >> 31);
+}
+
+saddle_fixed_t saddle_distance(saddle_fixed_t speed, uint32_t time_q31)
+{
+    const uint64_t distance_q42_m = product(speed, time_q31);
     const uint64_t max_q42_m = (uint64_t)2 << 42;
     return (int64_t)(distance_q42_m < max_q42_m ? distance_q42_m : max_q42_m) * 1000000;
+}
+
+saddle_fixed_t saddle_angle(saddle_fixed_t curvature, int64_t way_nm)
+{
+    const int64_t in_range_nm = way_nm < 0 ? 0 : limited_integer(way_nm, WAY_MAX_NM);
+    const uint32_t way_q31 = (uint32_t)(((uint64_t)in_range_nm * Q31_M_PER_NM + HALF) >> 30);
+    const int64_t angle = (int64_t)product(curvature < 0 ? -curvature : curvature, way_q31);
+    return curvature < 0 ? -angle : angle;
+}
+
+saddle_fixed_t saddle_angle_sum(saddle_fixed_t a, saddle_fixed_t b)
+{
+    const int64_t sum = limited_integer(a, HALF_TURN) + limited_integer(b, HALF_TURN);
+    if (sum > HALF_TURN) {
+        return sum - TURN;
+    }
+    return sum < -HALF_TURN ? sum + TURN : sum;
+}
+
+int64_t saddle_share_nm(int64_t length_nm, float factor)
+{
+    const int64_t one = (int64_t)1 << 30;
+    const int64_t in_range_nm = limited_integer(length_nm, INT32_MAX);
+    return in_range_nm * (int32_t)(limited(factor, 1.0f) * 1073741824.0f) / one;
 }
 
 saddle_fixed_t saddle_position_sum(saddle_fixed_t a, saddle_fixed_t b)

@@ -32,6 +32,17 @@ saddle_fixed_t saddle_speed_change(float rate_m_s2, uint32_t dt_us);
 /** A time, limited to [0, 2), in 2^-31 s. */
 uint32_t saddle_time_from_s(float time_s);
 
+/** An angle, too, counts 2^-42 rad, and is converted as a speed is. That of a way at a curvature in 2^-42
+ *  rad/m, |curvature| < 4 rad/m, 0 <= way_nm < 2 * 10^9, limited to that: exact to 2^-41 rad and 4 parts
+ *  in 10^10. */
+saddle_fixed_t saddle_angle(saddle_fixed_t curvature, int64_t way_nm);
+
+/** Sum of two angles in [-pi, pi], within that again. */
+saddle_fixed_t saddle_angle_sum(saddle_fixed_t a, saddle_fixed_t b);
+
+/** What of a length in nm, |length_nm| < 2^31, a factor in [-1, 1] leaves; exact to 2^-24 of it. */
+int64_t saddle_share_nm(int64_t length_nm, float factor);
+
 /** Distance in such a time at a constant speed >= 0, a negative one counts as 0; exact to 2^-41 m. */
 saddle_fixed_t saddle_distance(saddle_fixed_t speed, uint32_t time_q31);
 

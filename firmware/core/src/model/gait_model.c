@@ -38,6 +38,29 @@ saddle_quarter_t saddle_quarter(const saddle_model_t *model, saddle_side_t stanc
     return quarter;
 }
 
+/* No way bends more: what fixed point holds. */
+#define CURVATURE_MAX_1_M 3.9f
+
+/* [E48] */
+float saddle_turn_max_rad_s(const saddle_model_t *model, float speed_m_s)
+{
+    const float width_m = saddle_step_width_m(model, speed_m_s);
+    const saddle_quarter_t quarter = saddle_quarter(model, SADDLE_LEFT, 1.0f, width_m, speed_m_s);
+    const float half_m = saddle_longer_step_factor(&model->config) *
+                         saddle_regressed_half_step_m(&model->config, speed_m_s);
+    const float reach_rad = 4.0f * (model->body.half_step_max_m - half_m) / quarter.width_m;
+    const float step_rad =
+        saddle_clamp(model->config.turn_step_max_rad, 0.0f, saddle_larger(reach_rad, 0.0f));
+    const float curvature_1_m = saddle_smaller(
+        CURVATURE_MAX_1_M, saddle_smaller(0.5f * step_rad / half_m, 1.0f / quarter.width_m));
+    const float lean_max_m = 0.5f * quarter.width_m - quarter.amplitude_m;
+    const float w = model->body.natural_frequency_rad_s;
+    if (!(speed_m_s > 0.0f)) {
+        return 0.0f;
+    }
+    return saddle_smaller(curvature_1_m * speed_m_s, lean_max_m * w * w / speed_m_s);
+}
+
 /* [E4] */
 SADDLE_NOINLINE saddle_fixed_t saddle_half_step(const saddle_model_t *model, saddle_side_t foot,
                                                 saddle_fixed_t speed)

@@ -25,6 +25,10 @@ saddle_fixed_t saddle_half_step(const saddle_model_t *model, saddle_side_t foot,
 /** [E3] Where a foot lands beside the walking line: y, positive for the left foot. */
 float saddle_landing_y_m(const saddle_model_t *model, saddle_side_t foot, float speed_m_s);
 
+/** [E48] The largest turning rate of a walk at a speed: as far as the legs reach, as the hips turn in a
+ *  step, and as the CoM leans without passing over the inner foot; 0 for speed <= 0. */
+float saddle_turn_max_rad_s(const saddle_model_t *model, float speed_m_s);
+
 /** Amplitudes at a speed for a quarter of the given shape; width_m below 2 cm counts as 2 cm. */
 saddle_quarter_t saddle_quarter(const saddle_model_t *model, saddle_side_t stance, float length_m,
                                 float width_m, float speed_m_s);

@@ -7,12 +7,12 @@
 #include "model/gait_model.h"
 #include "motion/com_path.h"
 #include "motion/speed_profile.h"
+#include "motion/way.h"
 
 #include <math.h>
 
 /* A quarter lasts at least 36 ms, [E6] at its extremes, and a tick at most 250 ms. */
 #define VIA_POINTS_A_TICK 8
-#define STEP_MAX_M 2.0f     /* no landing is further from where it was planned */
 #define SPEED_MIN_M_S 0.01f /* slower transitions are shaped as if this fast */
 
 /* A landing is taken over in the first half of the quarter after it and the first quarter of the
@@ -140,6 +140,33 @@ static void follow_shape(saddle_cycle_t *cycle, const saddle_model_t *model, sad
     }
 }
 
+/* How far the CoM leans to the left. */
+static saddle_sample_t lean_at(const saddle_cycle_t *cycle, float x_m)
+{
+    const saddle_sample_t lean = {cycle->lean_m, 0.0f};
+    return sum(lean, saddle_blend_at(&cycle->leaning, x_m));
+}
+
+/* [E49] From now on towards another lean, until the quarter's end. */
+static void lean_towards(saddle_cycle_t *cycle, saddle_sample_t actual, float lean_m)
+{
+    const bool before = saddle_cycle_before_landing(cycle);
+    const float rest_m = before ? cycle->quarter.length_m - cycle->x_m : -cycle->x_m;
+    const saddle_sample_t lean = {lean_m, 0.0f};
+    cycle->lean_m = lean_m;
+    cycle->leaning = saddle_blend(actual, lean, cycle->x_m, rest_m);
+}
+
+/* As the running quarter's arc and the speed need it; a last swing ends upright. */
+static void lean_into_turn(saddle_cycle_t *cycle, const saddle_model_t *model,
+                           saddle_sample_t actual, float speed_m_s)
+{
+    const bool before = saddle_cycle_before_landing(cycle);
+    const float curvature_1_m = cycle->way.arcs[before ? 1 : 0].curvature_1_m;
+    const float needed_m = saddle_lean_m(model, curvature_1_m, speed_m_s);
+    lean_towards(cycle, actual, cycle->last_swing ? 0.0f : needed_m);
+}
+
 /* The swing foot's way along x at a phase, [E9] or [E44], and its change with the CoM's. The last swing
  * ends beside the stance foot, where only the line leads. */
 static saddle_sample_t swing_way(const saddle_cycle_t *cycle, const saddle_model_t *model,
@@ -168,6 +195,7 @@ static SADDLE_NOINLINE void pass_foot(saddle_cycle_t *cycle, const saddle_model_
     cycle->quarter = saddle_quarter(model, stance, saddle_position_to_m(cycle->quarter_length),
                                     saddle_magnitude(cycle->swing.line_y_m), speed_m_s);
     follow_shape(cycle, model, SADDLE_PHASE_FOOT, &actual);
+    lean_into_turn(cycle, model, lean_at(cycle, 0.0f), speed_m_s);
     if (model->config.swing_skew > 0.0f) {
         const float share = 2.0f * saddle_swing_share(&model->body.swing, 0.5f).value - 1.0f;
         cycle->swing.stretch_m = 2.0f * (old_half_m - cycle->quarter.length_m) * share;
@@ -255,6 +283,7 @@ typedef struct {
     int64_t step_nm; /* along x */
     saddle_fixed_t behind;
     float behind_m;
+    float onward_m_s; /* speed of the CoM midway to the landing after it */
 } landing_t;
 
 /* The swing foot has landed, with the CoM at a place from the old stance foot, hereafter from the new
@@ -266,23 +295,25 @@ static void begin_step(saddle_cycle_t *cycle, const saddle_model_t *model, const
     cycle->lift_pitch_rad = toe_off_angle_rad(cycle, model, place);
     place->lateral.value -= landing->step_m.y;
     cycle->last_step_m = landing->step_m;
+    const saddle_sample_t lean = lean_at(cycle, cycle->x_m);
 
     cycle->phase++;
     cycle->step_count++;
     cycle->quarter_length = landing->behind;
     move_to(cycle, -landing->behind);
-    cycle->origin_x_nm += landing->step_nm;
+    saddle_way_land(&cycle->way, model, landing->onward_m_s, landing->step_nm);
     cycle->stance_y_m += landing->step_m.y;
     cycle->quarter =
         saddle_quarter(model, saddle_other_side(cycle->quarter.stance), landing->behind_m,
                        saddle_magnitude(landing->step_m.y), speed_m_s);
     follow_shape(cycle, model, SADDLE_PHASE_LANDED, place);
+    lean_into_turn(cycle, model, lean, speed_m_s);
     lift_off(cycle, model, lifted_m, speed_m_s, SADDLE_PHASE_LANDED);
 }
 
 /* The saddle via point: the swing foot lands as planned. */
 static SADDLE_NOINLINE void pass_saddle(saddle_cycle_t *cycle, const saddle_model_t *model,
-                                        saddle_fixed_t speed)
+                                        saddle_fixed_t speed, saddle_fixed_t onward)
 {
     place_t place = reference_at(cycle, model, SADDLE_PHASE_LANDING); /* no mismatch is left */
     const saddle_vec2_t moved_m = cycle->swing.moved_m;
@@ -292,6 +323,7 @@ static SADDLE_NOINLINE void pass_saddle(saddle_cycle_t *cycle, const saddle_mode
         .step_nm = 2 * saddle_position_to_nm(cycle->quarter_length) + saddle_position_to_nm(moved),
         .behind = cycle->quarter_length + moved,
         .behind_m = cycle->quarter.length_m + moved_m.x,
+        .onward_m_s = saddle_speed_to_m_s(onward),
     };
     begin_step(cycle, model, &landing, &place, saddle_speed_to_m_s(speed));
 }
@@ -310,6 +342,7 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
     plan_heel_strike(cycle, model, start->heel_strike_rad);
     cycle->phase = start->phase;
     cycle->stance_y_m = start->stance_y_m;
+    saddle_way_begin(&cycle->way);
     cycle->last_swing = false;
     cycle->lift_pitch_rad = 0.0f;
     cycle->last_step_m.x = -start->other_m.x;
@@ -328,7 +361,11 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
                                         saddle_magnitude(cycle->swing.line_y_m), speed_m_s);
     }
     follow_shape(cycle, model, phase, &actual);
+    const saddle_sample_t upright = {0.0f, 0.0f};
+    lean_towards(cycle, upright, 0.0f);
     if (start->under_way) {
+        saddle_way_join(&cycle->way, speed_m_s);
+        cycle->lean_m = saddle_lean_m(model, cycle->way.arcs[1].curvature_1_m, speed_m_s);
         cycle->swing.lift_progress = 0.0f;
         cycle->lateral.length_m = 0.0f;
         cycle->vertical.length_m = 0.0f;
@@ -337,6 +374,7 @@ void saddle_cycle_begin(saddle_cycle_t *cycle, const saddle_model_t *model,
 
 void saddle_cycle_stand(saddle_cycle_t *cycle, saddle_side_t stance, float stance_y_m)
 {
+    saddle_way_begin(&cycle->way);
     cycle->quarter.stance = stance;
     cycle->stance_y_m = stance_y_m;
 }
@@ -442,6 +480,7 @@ static SADDLE_NOINLINE void land_here(saddle_cycle_t *cycle, const saddle_model_
         .step_nm = saddle_position_to_nm(step),
         .behind = step - cycle->position,
         .behind_m = saddle_position_to_m(step - cycle->position),
+        .onward_m_s = saddle_speed_to_m_s(saddle_profile_speed_after(&cycle->profile, step_m.x)),
     };
     begin_step(cycle, model, &landing, &place, cycle->profile.speed_m_s);
     plan_heel_strike(cycle, model, heel_strike_rad);
@@ -492,7 +531,9 @@ SADDLE_NOINLINE uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddl
         move_to(cycle, end);
         const saddle_fixed_t speed = saddle_profile_speed_after(&before, distance_m);
         if (saddle_cycle_before_landing(cycle)) {
-            pass_saddle(cycle, model, speed);
+            const float step_m = 2.0f * cycle->quarter.length_m;
+            pass_saddle(cycle, model, speed,
+                        saddle_profile_speed_after(&before, distance_m + step_m));
             plan_heel_strike(cycle, model, heel_strike_rad);
         } else {
             pass_foot(cycle, model, speed);
@@ -574,12 +615,13 @@ SADDLE_NOINLINE bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model
         (x_m > old_x_m && !can_end(cycle, model, -x_m))) {
         return false;
     }
+    const saddle_sample_t lean = lean_at(cycle, old_x_m);
     saddle_swing_state_t foot;
     swing_foot(cycle, model, old_x_m, old_phase, &foot);
     const saddle_vec2_t swing_m = {foot.position_m.x - dx_m, foot.position_m.y - dy_m};
     move_to(cycle, saddle_position_from_m(x_m));
     cycle->quarter_length = saddle_position_from_m(length_m);
-    cycle->origin_x_nm += (int64_t)(int32_t)(1.0e9f * saddle_clamp(dx_m, -STEP_MAX_M, STEP_MAX_M));
+    saddle_way_shift(&cycle->way, dx_m);
     cycle->stance_y_m += dy_m;
     cycle->last_step_m = step_m;
     const float speed_m_s = cycle->profile.speed_m_s;
@@ -587,6 +629,7 @@ SADDLE_NOINLINE bool saddle_cycle_land(saddle_cycle_t *cycle, const saddle_model
     const saddle_sin_cos_t phase = saddle_quarter_phase(length_m, cycle->x_m);
     set_phase(cycle, phase);
     follow_shape(cycle, model, phase, &place);
+    lean_towards(cycle, lean, cycle->lean_m);
     redirect_swing(cycle, model, swing_m, speed_m_s, phase);
     return true;
 }
@@ -719,10 +762,15 @@ static float swing_pitch_rad(const saddle_cycle_t *cycle, const saddle_model_t *
     return -landing_angle_rad(cycle, model) * saddle_min_jerk(2.0f * progress - 1.0f);
 }
 
+saddle_sample_t saddle_cycle_lean(const saddle_cycle_t *cycle)
+{
+    return lean_at(cycle, cycle->x_m);
+}
+
 float saddle_cycle_com_y_m(const saddle_cycle_t *cycle, const saddle_model_t *model)
 {
     return lateral_at(cycle, model, saddle_cycle_phase(cycle)).value +
-           saddle_blend_at(&cycle->lateral, cycle->x_m).value;
+           saddle_blend_at(&cycle->lateral, cycle->x_m).value + lean_at(cycle, cycle->x_m).value;
 }
 
 float saddle_cycle_strike_lead_m(const saddle_cycle_t *cycle, const saddle_model_t *model,
@@ -741,7 +789,8 @@ void saddle_cycle_pose(const saddle_cycle_t *cycle, const saddle_model_t *model,
     const bool before = saddle_cycle_before_landing(cycle);
     const saddle_sin_cos_t phase = saddle_cycle_phase(cycle);
     const saddle_sample_t lateral =
-        sum(lateral_at(cycle, model, phase), saddle_blend_at(&cycle->lateral, x_m));
+        sum(sum(lateral_at(cycle, model, phase), saddle_blend_at(&cycle->lateral, x_m)),
+            lean_at(cycle, x_m));
     const float to_saddle_m = before ? quarter_m - x_m : quarter_m + x_m;
     pose->progress = quarter_progress(cycle, x_m);
     pose->com_m.x = x_m;

@@ -75,6 +75,9 @@ saddle_sin_cos_t saddle_cycle_phase(const saddle_cycle_t *cycle);
 /** Way to the end of the running quarter. */
 float saddle_cycle_distance_to_via_point_m(const saddle_cycle_t *cycle);
 
+/** [E49] How far the CoM leans to the left, and its change with the CoM's x. */
+saddle_sample_t saddle_cycle_lean(const saddle_cycle_t *cycle);
+
 /** The pose's com_m.y alone. */
 float saddle_cycle_com_y_m(const saddle_cycle_t *cycle, const saddle_model_t *model);
 

@@ -8,6 +8,7 @@
 #include "motion/reference.h"
 #include "motion/speed_profile.h"
 #include "motion/standing.h"
+#include "motion/way.h"
 
 #include <math.h>
 
@@ -210,7 +211,14 @@ uint32_t saddle_plan_write(const saddle_planner_t *planner, const saddle_model_t
     plan->support = (uint8_t)cycle->quarter.stance;
     plan->step_count = cycle->step_count;
     plan->stride_count = cycle->stride_count;
-    plan->origin_x_nm = cycle->origin_x_nm;
+    plan->origin_x_nm = cycle->way.origin_x_nm;
+    plan->origin_y_nm = cycle->way.origin_y_nm;
+    plan->heading_rad = saddle_speed_to_m_s(cycle->way.heading);
+    plan->curvature_1_m[0] = cycle->way.arcs[0].curvature_1_m;
+    plan->curvature_1_m[1] = cycle->way.arcs[1].curvature_1_m;
+    plan->foot_yaw_rad[SADDLE_LEFT] = 0.0f;
+    plan->foot_yaw_rad[SADDLE_RIGHT] = 0.0f;
+    plan->pelvis_yaw_rad = 0.0f;
     plan->last_step_m = cycle->last_step_m;
     if (saddle_stands(planner)) {
         write_standing(planner, model, plan);
@@ -220,4 +228,53 @@ uint32_t saddle_plan_write(const saddle_planner_t *planner, const saddle_model_t
     write_events(planner, model, plan);
     saddle_reference(model, plan, 0.0f, &plan->reference);
     return limits;
+}
+
+static saddle_course_t course_of(saddle_vec3_t place_m, saddle_vec3_t rate_m_s)
+{
+    return (saddle_course_t){{place_m.x, place_m.y}, {rate_m_s.x, rate_m_s.y}};
+}
+
+static void put(saddle_on_ground_t ground, saddle_vec3_t *position_m, saddle_vec3_t *velocity_m_s)
+{
+    position_m->x = ground.position_m.x;
+    position_m->y = ground.position_m.y;
+    velocity_m_s->x = ground.velocity_m_s.x;
+    velocity_m_s->y = ground.velocity_m_s.y;
+}
+
+static void bend_com(const saddle_way_t *way, saddle_plan_t *plan)
+{
+    const saddle_vec3_t *stance_m = &plan->foot_m[plan->support];
+    const saddle_course_t course = course_of(plan->com_m, plan->com_velocity_m_s);
+    const saddle_on_ground_t com = saddle_way_to_ground(way->arcs, &course);
+    put(com, &plan->com_m, &plan->com_velocity_m_s);
+    plan->pelvis_yaw_rad = com.yaw_rad;
+    const saddle_vec3_t leg_m = {plan->com_m.x - stance_m->x, plan->com_m.y - stance_m->y,
+                                 plan->com_m.z};
+    plan->leg_length_m = sqrtf(leg_m.x * leg_m.x + leg_m.y * leg_m.y + leg_m.z * leg_m.z);
+}
+
+static void bend_feet(const saddle_way_t *way, saddle_plan_t *plan)
+{
+    const saddle_side_t stance = (saddle_side_t)plan->support;
+    const saddle_side_t swing = saddle_other_side(stance);
+    const saddle_vec2_t stance_m = {plan->foot_m[stance].x, plan->foot_m[stance].y};
+    const saddle_course_t course = course_of(plan->foot_m[swing], plan->swing_velocity_m_s);
+    const saddle_on_ground_t foot = saddle_way_to_ground(way->arcs, &course);
+    put(foot, &plan->foot_m[swing], &plan->swing_velocity_m_s);
+    plan->foot_yaw_rad[swing] = foot.yaw_rad;
+    plan->landing_m = saddle_way_point_to_ground(way->arcs, plan->landing_m);
+    plan->last_step_m = saddle_vec2_sub(
+        stance_m,
+        saddle_way_point_to_ground(way->arcs, saddle_vec2_sub(stance_m, plan->last_step_m)));
+}
+
+void saddle_plan_bend(const saddle_way_t *way, const saddle_model_t *model, saddle_plan_t *plan)
+{
+    if (way->bent) {
+        bend_com(way, plan);
+        bend_feet(way, plan);
+        saddle_reference_bend(model, plan, &plan->reference);
+    }
 }

@@ -9,6 +9,7 @@
 #include "motion/gait_cycle.h"
 #include "motion/standing.h"
 #include "motion/stopping.h"
+#include "motion/way.h"
 
 #include <saddlewalk/saddlewalk.h>
 
@@ -26,6 +27,7 @@ bool saddle_command_usable(const saddle_command_t *command)
     }
     return command->mode == (uint8_t)SADDLE_COMMAND_WALK &&
            saddle_in_range(command->speed_m_s, -finite_max, finite_max) &&
+           saddle_in_range(command->turn_rate_rad_s, -finite_max, finite_max) &&
            saddle_in_range(command->heel_strike_rad, -finite_max, finite_max);
 }
 
@@ -50,11 +52,23 @@ static float feasible_speed_m_s(const saddle_model_t *model, float wanted_m_s, u
                          limits);
 }
 
-/* The wanted speed and angle, feasible. */
+/* The turning rate that a walk at a speed bears. */
+static float feasible_turn_rad_s(const saddle_model_t *model, float wanted_rad_s, float speed_m_s,
+                                 uint32_t *limits)
+{
+    if (wanted_rad_s == 0.0f) {
+        return 0.0f;
+    }
+    const float max_rad_s = saddle_turn_max_rad_s(model, speed_m_s);
+    return clamp_command(wanted_rad_s, -max_rad_s, max_rad_s, SADDLE_LIMIT_TURN, limits);
+}
+
+/* The wanted speed, turning rate and angle, feasible. */
 static uint32_t apply_command(saddle_planner_t *planner, const saddle_model_t *model,
                               const saddle_command_t *command)
 {
     uint32_t limits = 0;
+    planner->cycle.way.wanted_rad_s = 0.0f;
     if (command->mode == (uint8_t)SADDLE_COMMAND_STAND || command->speed_m_s == 0.0f) {
         planner->speed_m_s = 0.0f;
         return 0;
@@ -63,6 +77,8 @@ static uint32_t apply_command(saddle_planner_t *planner, const saddle_model_t *m
     planner->heel_strike_rad =
         clamp_command(command->heel_strike_rad, 0.0f, model->config.heel_strike_max_rad,
                       SADDLE_LIMIT_HEEL_STRIKE, &limits);
+    planner->cycle.way.wanted_rad_s =
+        feasible_turn_rad_s(model, command->turn_rate_rad_s, planner->speed_m_s, &limits);
     return limits;
 }
 
@@ -249,7 +265,9 @@ uint32_t saddle_planner_join(saddle_planner_t *planner, const saddle_model_t *mo
     start.under_way = true;
     planner->mode = (uint8_t)SADDLE_MODE_WALKING;
     planner->shifting = false;
+    const float wanted_rad_s = planner->cycle.way.wanted_rad_s;
     saddle_clear(&planner->cycle, sizeof planner->cycle);
+    planner->cycle.way.wanted_rad_s = wanted_rad_s;
     saddle_cycle_begin(&planner->cycle, model, &start);
     return limits;
 }
@@ -292,12 +310,25 @@ static SADDLE_NOINLINE void take_early_landing(saddle_planner_t *planner,
     }
 }
 
-uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_model_t *model,
-                               const saddle_command_t *command,
-                               const saddle_measurement_t *measured, uint32_t dt_us)
+void saddle_planner_along(const saddle_planner_t *planner, const saddle_model_t *model,
+                          const saddle_measurement_t *measured, saddle_measurement_t *along)
 {
-    watch_swing(planner, measured, dt_us);
-    saddle_planner_advance(planner, model, dt_us);
+    const saddle_cycle_t *cycle = &planner->cycle;
+    const saddle_vec2_t com_m = {cycle->x_m,
+                                 cycle->stance_y_m + saddle_cycle_com_y_m(cycle, model)};
+    const saddle_sample_t lean = saddle_cycle_lean(cycle);
+    saddle_copy(along, measured, sizeof *along);
+    saddle_way_measured(cycle->way.arcs, com_m, along);
+    along->com.velocity_m_s.y -= lean.slope * cycle->profile.speed_m_s;
+    for (int side = 0; side < 2; side++) {
+        along->foot[side].cop_m.y += lean.value;
+    }
+}
+
+/* What is measured along the way, or NULL. */
+static uint32_t follow(saddle_planner_t *planner, const saddle_model_t *model,
+                       const saddle_command_t *command, const saddle_measurement_t *measured)
+{
     uint32_t limits = apply_command(planner, model, command);
     if (planner->mode == (uint8_t)SADDLE_MODE_STANDING) {
         return limits |
@@ -309,4 +340,18 @@ uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_model_t *
         choose_profile(planner, model);
     }
     return limits;
+}
+
+uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_model_t *model,
+                               const saddle_command_t *command,
+                               const saddle_measurement_t *measured, uint32_t dt_us)
+{
+    watch_swing(planner, measured, dt_us);
+    saddle_planner_advance(planner, model, dt_us);
+    if (planner->cycle.way.bent && measured != NULL) {
+        saddle_measurement_t along;
+        saddle_planner_along(planner, model, measured, &along);
+        return follow(planner, model, command, &along);
+    }
+    return follow(planner, model, command, measured);
 }

@@ -22,6 +22,11 @@ uint32_t saddle_planner_update(saddle_planner_t *planner, const saddle_model_t *
                                const saddle_command_t *command,
                                const saddle_measurement_t *measured, uint32_t dt_us);
 
+/** The measured feet and CoM as a straight walk would have them: along the way and across it, without
+ *  the lean of a turn. `measured` is in the wearer's heading. While the way is straight, the same. */
+void saddle_planner_along(const saddle_planner_t *planner, const saddle_model_t *model,
+                          const saddle_measurement_t *measured, saddle_measurement_t *along);
+
 /** Let time pass, nothing else. */
 void saddle_planner_advance(saddle_planner_t *planner, const saddle_model_t *model, uint32_t dt_us);
 

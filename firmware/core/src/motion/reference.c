@@ -1,7 +1,9 @@
 #include "motion/reference.h"
 
+#include "math/bytes.h"
 #include "math/elementary.h"
 #include "math/vec2.h"
+#include "motion/way.h"
 
 #include <math.h>
 
@@ -500,4 +502,43 @@ SADDLE_NOINLINE void saddle_reference(const saddle_model_t *model, const saddle_
         const step_t step = step_at(plan, after_s);
         walk(model, &step, reference);
     }
+}
+
+/* The rate is that of the XCoM's distance, per natural frequency. */
+void saddle_reference_bend(const saddle_model_t *model, const saddle_plan_t *plan,
+                           saddle_reference_t *reference)
+{
+    const float w = model->body.natural_frequency_rad_s;
+    const saddle_vec2_t ahead_m = saddle_vec2_sub(reference->xcom_m, reference->com_m);
+    saddle_course_t com = {reference->com_m, saddle_vec2_scale(w, ahead_m)};
+    saddle_arc_t arcs[2];
+    saddle_way_of(plan, arcs);
+    com.place_m.y +=
+        saddle_lean_m(model, plan->curvature_1_m[com.place_m.x < 0.0f ? 0 : 1], plan->speed_m_s);
+    const saddle_on_ground_t ground = saddle_way_to_ground(arcs, &com);
+    reference->com_m = ground.position_m;
+    reference->xcom_m =
+        saddle_vec2_add(ground.position_m, saddle_vec2_scale(1.0f / w, ground.velocity_m_s));
+    reference->cop_m = saddle_way_point_to_ground(arcs, reference->cop_m);
+}
+
+void saddle_reference_after_plan(const saddle_model_t *model, const saddle_plan_t *plan,
+                                 float after_s, saddle_reference_t *reference)
+{
+    if (plan->curvature_1_m[0] == 0.0f && plan->curvature_1_m[1] == 0.0f) {
+        saddle_reference(model, plan, after_s, reference);
+        return;
+    }
+    const saddle_vec2_t com_m = {plan->com_m.x, plan->com_m.y};
+    const saddle_vec2_t stance_m = {plan->foot_m[plan->support].x, plan->foot_m[plan->support].y};
+    saddle_arc_t arcs[2];
+    saddle_plan_t along;
+    saddle_copy(&along, plan, sizeof along);
+    saddle_way_of(plan, arcs);
+    along.com_m.x = saddle_way_from_ground(arcs, com_m).x;
+    along.landing_m = saddle_way_from_ground(arcs, plan->landing_m);
+    along.last_step_m = saddle_vec2_sub(
+        stance_m, saddle_way_from_ground(arcs, saddle_vec2_sub(stance_m, plan->last_step_m)));
+    saddle_reference(model, &along, after_s, reference);
+    saddle_reference_bend(model, plan, reference);
 }

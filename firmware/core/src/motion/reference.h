@@ -8,10 +8,18 @@
 /** Where the walk alone has the running swing land: plan->landing_m unless that was moved, [E45]. */
 saddle_vec2_t saddle_unmoved_landing_m(const saddle_plan_t *plan);
 
-/** The reference after_s >= 0 after a valid plan, in the plan's frame: the speed changes on as it does
- *  now, and a landing begins a step like the one before. [E39] [E40] in a step, [E41] in a first or
+/** The reference after_s >= 0 after a valid plan along the way: the speed changes on as it does now,
+ *  and a landing begins a step like the one before. [E39] [E40] in a step, [E41] in a first or
  *  last swing, [E42] while both feet stand. */
 void saddle_reference(const saddle_model_t *model, const saddle_plan_t *plan, float after_s,
                       saddle_reference_t *reference);
+
+/** [E47] From along the way to the axes of the plan's stance foot. */
+void saddle_reference_bend(const saddle_model_t *model, const saddle_plan_t *plan,
+                           saddle_reference_t *reference);
+
+/** Both, after a plan as the output has it, in its axes. */
+void saddle_reference_after_plan(const saddle_model_t *model, const saddle_plan_t *plan,
+                                 float after_s, saddle_reference_t *reference);
 
 #endif

@@ -4,6 +4,7 @@
 #include "math/vec2.h"
 #include "model/gait_model.h"
 #include "motion/gait_cycle.h"
+#include "motion/way.h"
 
 #include <math.h>
 
@@ -96,7 +97,8 @@ float saddle_standing_height_m(const saddle_planner_t *planner, const saddle_mod
 
 void saddle_stand_beside(saddle_planner_t *planner, float com_y_m)
 {
-    const saddle_cycle_t *cycle = &planner->cycle;
+    saddle_cycle_t *cycle = &planner->cycle;
+    saddle_way_begin(&cycle->way);
     planner->other_m.x = 0.0f;
     planner->other_m.y = cycle->swing.line_y_m;
     planner->start_phase = cycle->quarter.stance == SADDLE_LEFT ? 0u : 2u;

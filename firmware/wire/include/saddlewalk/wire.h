@@ -39,16 +39,17 @@ extern "C" {
 
 #include <saddlewalk/cmac.h>
 
-/** Of a COMMAND that is accepted. Version 6 has no MEASURED_TIME and no ROUND, and is the same else. */
+/** Of a COMMAND that is accepted. Version 6 has no MEASURED_TIME and no ROUND, and 7 as well no TURN_RATE,
+ *  whose byte is 0; both are the same else. */
 #define SADDLE_WIRE_OLDEST_VERSION 6u
 
 /** Every frame is a classic CAN data frame of this many bytes with an 11-bit identifier. */
 #define SADDLE_WIRE_LENGTH 8u
 
-/** Frames of one output: the plan (10), the scores (5), the verdict (2), the margin and the learned
+/** Frames of one output: the plan (16), the scores (5), the verdict (2), the margin and the learned
  *  walk (4), the process (3), and HEALTH as the last. SESSION is separate: it is sent only while codes
  *  are required. */
-#define SADDLE_WIRE_OUTPUT_FRAMES 29u
+#define SADDLE_WIRE_OUTPUT_FRAMES 31u
 
 /** Frames of one measurement: CoM, left foot, right foot; MEASURED_TIME is sent before them. */
 #define SADDLE_WIRE_MEASURED_FRAMES 3u

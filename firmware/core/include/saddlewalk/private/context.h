@@ -119,6 +119,27 @@ typedef struct {
     bool toe_off_limited; /**< the geometry asks for an angle outside [0, pi] */
 } saddle_transition_t;
 
+/** An arc of the way, from where one foot landed to where the next one does: places are from the stance
+ *  foot, along the way, [E47]. */
+typedef struct {
+    float curvature_1_m; /**< to the left */
+    float begin_m;
+    float before_1_m; /**< curvature of the arc before, less its own: fades out, */
+    float fade_m;     /**< on this way from its begin */
+} saddle_arc_t;
+
+/** The walking line: what the gait cycle's x and y are measured along and across. */
+typedef struct {
+    int64_t origin_x_nm, origin_y_nm; /**< beside the stance foot, from where it began */
+    saddle_fixed_t heading;           /**< there; an angle counts 2^-42 rad */
+    saddle_fixed_t curvature;         /**< of the arc ahead, exactly */
+    uint32_t walked_nm;               /**< to the stance foot, wraps */
+    float turn_rate_rad_s;            /**< that the arc ahead was made for, */
+    float wanted_rad_s;               /**< and that of the next arc; feasible */
+    saddle_arc_t arcs[2];             /**< behind and ahead of the stance foot */
+    bool bent;                        /**< else the arcs are straight and nothing fades */
+} saddle_way_t;
+
 /** The gait cycle. Every length is measured from the stance CoP, y from the walking line. */
 typedef struct {
     saddle_speed_profile_t profile;
@@ -132,10 +153,12 @@ typedef struct {
     bool last_swing;       /**< the running step ends beside the stance foot: a stop */
     uint32_t step_count;   /**< changes of the stance foot */
     uint32_t stride_count; /**< times that phase 0 was entered again */
-    int64_t origin_x_nm;   /**< distance to the stance foot */
+    saddle_way_t way;
     float stance_y_m;
     saddle_blend_t lateral;  /**< mismatch of CoM y */
     saddle_blend_t vertical; /**< mismatch of CoM z, cycloid only */
+    float lean_m;            /**< of the CoM to the left, to carry a turn, [E49], */
+    saddle_blend_t leaning;  /**< and what it is off that */
     saddle_swing_t swing;
     float lift_pitch_rad;             /**< of the swing foot when it lifted off */
     saddle_heel_strike_t next_strike; /**< of the next landing */
@@ -162,7 +185,7 @@ typedef struct {
 
 /** What is remembered of a plan, from its stance CoP: feet, and the reference's CoM and XCoM. */
 typedef struct {
-    uint32_t origin_x_nm;   /**< modulo 2^32: of plans so near the difference is exact */
+    uint32_t walked_nm;     /**< modulo 2^32: of plans so near the difference is exact */
     uint32_t until_next_us; /**< from this plan to the next one that is remembered */
     uint8_t support;        /**< saddle_side_t */
     bool carries[2];        /**< the reference loads the foot */
