@@ -1,8 +1,8 @@
 /* What there is to be measured, in one image: initialisations, ticks of every kind, then a device's
  * joints.
  *
- * Prints the sizes, then one line for each tick in turn, `tick MODE LEVEL FAULTS`, by which the
- * counted instructions are separated. */
+ * Prints the sizes, then one line for each tick in turn, `tick MODE LEVEL FAULTS STATUS TURNS`, by
+ * which the counted instructions are separated. */
 #include "device.h"
 #include "sequences.h"
 
@@ -22,6 +22,11 @@ static void print_sizes(void)
     printf("size joint_walk %u\n", (unsigned)sizeof(saddle_joint_walk_t));
 }
 
+static bool turns(const saddle_plan_t *plan)
+{
+    return plan->curvature_1_m[0] != 0.0f || plan->curvature_1_m[1] != 0.0f;
+}
+
 static void move_joints(bool absurd)
 {
     static device_t device;
@@ -39,9 +44,9 @@ int main(void)
         sequence_begin(&sequence, (sequence_kind_t)kind);
         while (sequence.ticks < TICKS) {
             sequence_tick(&sequence);
-            printf("tick %u %u %lx %u\n", (unsigned)sequence.output.plan.mode,
+            printf("tick %u %u %lx %u %d\n", (unsigned)sequence.output.plan.mode,
                    (unsigned)sequence.output.verdict.level, (unsigned long)sequence.output.faults,
-                   (unsigned)sequence.output.status);
+                   (unsigned)sequence.output.status, turns(&sequence.output.plan) ? 1 : 0);
         }
     }
     move_joints(false);

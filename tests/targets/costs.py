@@ -42,6 +42,7 @@ COUNTED = {
     "saddle_joint_commands": "command",
 }
 MODES = ["standing", "starting", "walking", "stopping"]
+TURNING = "turning"  # in any mode, on a bent way
 LEVEL_NAMES = ["unknown", "stable", "caution", "unstable"]
 MEDIAN = 1  # in the rows of by_kind()
 DOUBLE_HELPER = re.compile(r"__aeabi_(d|[a-z0-9]+2d$)|__[a-z]+df\w*$|__extendsfdf2|__truncdfsf2")
@@ -140,10 +141,11 @@ def instructions(calls: list[str]) -> dict[str, list[int]]:
 def kinds_of_ticks(printed: list[str]) -> Iterator[set[str]]:
     for line in printed:
         if line.startswith("tick "):
-            _, mode, level, faults, status = line.split()
+            _, mode, level, faults, status, turns = line.split()
             refused = status != "0"
             invalid = {"invalid input"} if refused or faults != "0" else set()
-            yield invalid if refused else {MODES[int(mode)], LEVEL_NAMES[int(level)], *invalid}
+            motion = TURNING if turns == "1" else MODES[int(mode)]
+            yield invalid if refused else {motion, LEVEL_NAMES[int(level)], *invalid}
 
 
 def measure_level(tools: Tools, level: str) -> tuple[Costs, dict[str, list[float]], list[str]]:
@@ -193,7 +195,7 @@ def measure_level(tools: Tools, level: str) -> tuple[Costs, dict[str, list[float
 def by_kind(kinds: list[set[str]], ticks: list[int]) -> dict[str, list[float]]:
     """Minimum, median, maximum and number of the ticks of each kind."""
     table = {}
-    for kind in [*MODES, *LEVEL_NAMES, "invalid input"]:
+    for kind in [*MODES, TURNING, *LEVEL_NAMES, "invalid input"]:
         counts = [count for count, names in zip(ticks, kinds, strict=True) if kind in names]
         if not counts:
             sys.exit(f"the benchmark has no tick that is {kind}")
@@ -284,7 +286,7 @@ that fail the build, and `tests/targets/costs.py` defines each number. Instructi
 counted in QEMU, call by call, callees included; they are not cycles. Flash is what a program links
 that calls the whole interface, code and constants, without the compiler's own routines. Stack is
 the deepest path through the call graph. {ticks} ticks were measured: a wearer who follows the plan
-and is pushed, the same with absurd numbers, and with NaN. Most of them are standing ticks,
+and is pushed, the same with absurd numbers, with NaN, and with turns. Most of them are standing ticks,
 which are cheap, so the median of a walk is more informative than that of all.
 """
 
@@ -309,7 +311,7 @@ def row(cells: Iterable[str]) -> str:
 
 def page(results: list[dict], aims: dict) -> Iterator[str]:
     first = results[0]
-    number = sum(entry[3] for entry in list(first["ticks"]["O2"].values())[:4])
+    number = sum(entry[3] for entry in list(first["ticks"]["O2"].values())[: len(MODES) + 1])
     yield INTRODUCTION.format(ticks=f"{number:,}")
     names = [result["target"] for result in results]
     yield row(["", *names, f"aim for {names[0]}"])

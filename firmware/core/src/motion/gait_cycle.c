@@ -147,20 +147,25 @@ static saddle_sample_t lean_at(const saddle_cycle_t *cycle, float x_m)
     return sum(lean, saddle_blend_at(&cycle->leaning, x_m));
 }
 
-/* [E49] From now on towards another lean, until the quarter's end. */
+/* [E49] From now on towards another lean, until the quarter's end; upright, nothing fades. */
 static void lean_towards(saddle_cycle_t *cycle, saddle_sample_t actual, float lean_m)
 {
     const bool before = saddle_cycle_before_landing(cycle);
     const float rest_m = before ? cycle->quarter.length_m - cycle->x_m : -cycle->x_m;
+    const float leans =
+        saddle_magnitude(actual.value) + saddle_magnitude(actual.slope) + saddle_magnitude(lean_m);
     const saddle_sample_t lean = {lean_m, 0.0f};
     cycle->lean_m = lean_m;
-    cycle->leaning = saddle_blend(actual, lean, cycle->x_m, rest_m);
+    cycle->leaning = saddle_blend(actual, lean, cycle->x_m, leans > 0.0f ? rest_m : 0.0f);
 }
 
 /* As the running quarter's arc and the speed need it; a last swing ends upright. */
 static void lean_into_turn(saddle_cycle_t *cycle, const saddle_model_t *model,
                            saddle_sample_t actual, float speed_m_s)
 {
+    if (!cycle->way.bent && cycle->leaning.length_m == 0.0f) {
+        return;
+    }
     const bool before = saddle_cycle_before_landing(cycle);
     const float curvature_1_m = cycle->way.arcs[before ? 1 : 0].curvature_1_m;
     const float needed_m = saddle_lean_m(model, curvature_1_m, speed_m_s);
@@ -283,7 +288,7 @@ typedef struct {
     int64_t step_nm; /* along x */
     saddle_fixed_t behind;
     float behind_m;
-    float onward_m_s; /* speed of the CoM midway to the landing after it */
+    float onward_m_s; /* speed of the CoM midway to the landing after it; of use in turns */
 } landing_t;
 
 /* The swing foot has landed, with the CoM at a place from the old stance foot, hereafter from the new
@@ -531,9 +536,11 @@ SADDLE_NOINLINE uint32_t saddle_cycle_advance(saddle_cycle_t *cycle, const saddl
         move_to(cycle, end);
         const saddle_fixed_t speed = saddle_profile_speed_after(&before, distance_m);
         if (saddle_cycle_before_landing(cycle)) {
-            const float step_m = 2.0f * cycle->quarter.length_m;
+            const float onward_m = distance_m + 2.0f * cycle->quarter.length_m;
             pass_saddle(cycle, model, speed,
-                        saddle_profile_speed_after(&before, distance_m + step_m));
+                        saddle_way_turns(&cycle->way)
+                            ? saddle_profile_speed_after(&before, onward_m)
+                            : speed);
             plan_heel_strike(cycle, model, heel_strike_rad);
         } else {
             pass_foot(cycle, model, speed);

@@ -1,6 +1,7 @@
 #include "motion/way.h"
 
 #include "math/blend.h"
+#include "math/bytes.h"
 #include "math/elementary.h"
 #include "math/fixed.h"
 #include "math/vec2.h"
@@ -15,8 +16,6 @@
 #define SPLITTER 4097.0f
 
 enum { BEHIND = 0, AHEAD = 1 };
-
-static const saddle_arc_t STRAIGHT = {0.0f, 0.0f, 0.0f, 0.0f};
 
 static bool is_zero(float x)
 {
@@ -35,8 +34,7 @@ static const saddle_arc_t *arc_at(const saddle_arc_t arcs[2], float along_m)
 
 void saddle_way_begin(saddle_way_t *way)
 {
-    way->arcs[BEHIND] = STRAIGHT;
-    way->arcs[AHEAD] = STRAIGHT;
+    saddle_clear(way->arcs, sizeof way->arcs);
     way->curvature = 0;
     way->turn_rate_rad_s = 0.0f;
     way->bent = false;
@@ -135,6 +133,11 @@ static float shortest_step_m(const saddle_model_t *model)
            saddle_smaller(config->step_length_factor_left, config->step_length_factor_right);
 }
 
+bool saddle_way_turns(const saddle_way_t *way)
+{
+    return way->bent || !is_zero(way->wanted_rad_s);
+}
+
 void saddle_way_land(saddle_way_t *way, const saddle_model_t *model, float speed_m_s,
                      int64_t way_nm)
 {
@@ -143,14 +146,14 @@ void saddle_way_land(saddle_way_t *way, const saddle_model_t *model, float speed
     const float step_m = 1.0e-9f * (float)(int32_t)way_nm;
     const saddle_fixed_t turn = way->curvature == 0 ? 0 : saddle_angle(way->curvature, way_nm);
     move_on(way, ahead, step_m, way_nm, turn);
-    if (!way->bent && is_zero(way->wanted_rad_s)) {
+    if (!saddle_way_turns(way)) {
         return;
     }
     const float rate_rad_s = next_rate_rad_s(way, model, speed_m_s, step_m);
     *behind = *ahead;
     behind->begin_m = -step_m;
     if (is_zero(rate_rad_s)) {
-        *ahead = STRAIGHT;
+        saddle_clear(ahead, sizeof *ahead);
         way->curvature = 0;
         way->turn_rate_rad_s = 0.0f;
     } else {
@@ -171,8 +174,7 @@ void saddle_way_shift(saddle_way_t *way, float way_m)
 
 void saddle_way_of(const saddle_plan_t *plan, saddle_arc_t arcs[2])
 {
-    arcs[BEHIND] = STRAIGHT;
-    arcs[AHEAD] = STRAIGHT;
+    saddle_clear(arcs, 2u * sizeof *arcs);
     arcs[BEHIND].curvature_1_m = plan->curvature_1_m[BEHIND];
     arcs[AHEAD].curvature_1_m = plan->curvature_1_m[AHEAD];
 }
@@ -220,9 +222,8 @@ saddle_vec2_t saddle_way_point_to_ground(const saddle_arc_t arcs[2], saddle_vec2
 }
 
 /* [E47] Of an arc through the stance foot: the angle and the distance as seen from its centre. */
-saddle_vec2_t saddle_way_from_ground(const saddle_arc_t arcs[2], saddle_vec2_t position_m)
+static saddle_vec2_t along_arc(float curvature_1_m, saddle_vec2_t position_m)
 {
-    const float curvature_1_m = arc_at(arcs, position_m.x)->curvature_1_m;
     if (is_zero(curvature_1_m)) {
         return position_m;
     }
@@ -233,6 +234,11 @@ saddle_vec2_t saddle_way_from_ground(const saddle_arc_t arcs[2], saddle_vec2_t p
         2.0f * position_m.y - curvature_1_m * saddle_vec2_dot(position_m, position_m);
     return (saddle_vec2_t){saddle_asin(side / distance) / curvature_1_m,
                            inward / (1.0f + distance)};
+}
+
+saddle_vec2_t saddle_way_from_ground(const saddle_arc_t arcs[2], saddle_vec2_t position_m)
+{
+    return along_arc(arc_at(arcs, position_m.x)->curvature_1_m, position_m);
 }
 
 /* [E49] */
@@ -253,14 +259,12 @@ void saddle_way_measured(const saddle_arc_t arcs[2], saddle_vec2_t com_m,
                          saddle_measurement_t *measured)
 {
     const saddle_arc_t *arc = arc_at(arcs, com_m.x);
-    const saddle_arc_t here[2] = {{.curvature_1_m = arc->curvature_1_m},
-                                  {.curvature_1_m = arc->curvature_1_m}};
     const saddle_sample_t lag = lag_at(arc, com_m.x);
     const saddle_vec2_t aside_m = {0.0f, com_m.y};
     for (int side = 0; side < 2; side++) {
         saddle_vec2_t *cop_m = &measured->foot[side].cop_m;
         const saddle_vec2_t from_line_m = turned(saddle_vec2_add(aside_m, *cop_m), lag.value);
-        *cop_m = saddle_vec2_sub(saddle_way_from_ground(here, from_line_m), aside_m);
+        *cop_m = saddle_vec2_sub(along_arc(arc->curvature_1_m, from_line_m), aside_m);
     }
     saddle_vec2_t *velocity_m_s = &measured->com.velocity_m_s;
     velocity_m_s->x /= 1.0f - (arc->curvature_1_m + lag.slope) * com_m.y;

@@ -23,6 +23,9 @@ void saddle_way_begin(saddle_way_t *way);
 /** As if the way had long turned at the wanted rate. */
 void saddle_way_join(saddle_way_t *way, float speed_m_s);
 
+/** It bends, or will from the next landing on. */
+bool saddle_way_turns(const saddle_way_t *way);
+
 /** A foot has landed after way_nm along the way: the arc that begins there has the wanted turning rate
  *  at the speed of the CoM there, as far as that is feasible and the rate may change in a step. */
 void saddle_way_land(saddle_way_t *way, const saddle_model_t *model, float speed_m_s,
