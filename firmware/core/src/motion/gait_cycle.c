@@ -163,8 +163,8 @@ static void lean_towards(saddle_cycle_t *cycle, saddle_sample_t actual, float le
 static void lean_into_turn(saddle_cycle_t *cycle, const saddle_model_t *model,
                            saddle_sample_t actual, float speed_m_s)
 {
-    if (!cycle->way.bent && cycle->leaning.length_m == 0.0f) {
-        return;
+    if (!cycle->way.bent) {
+        return; /* upright: a lean has gone before the way is straight again */
     }
     const bool before = saddle_cycle_before_landing(cycle);
     const float curvature_1_m = cycle->way.arcs[before ? 1 : 0].curvature_1_m;
