@@ -286,8 +286,8 @@ that fail the build, and `tests/targets/costs.py` defines each number. Instructi
 counted in QEMU, call by call, callees included; they are not cycles. Flash is what a program links
 that calls the whole interface, code and constants, without the compiler's own routines. Stack is
 the deepest path through the call graph. {ticks} ticks were measured: a wearer who follows the plan
-and is pushed, the same with absurd numbers, with NaN, and with turns. Most of them are standing ticks,
-which are cheap, so the median of a walk is more informative than that of all.
+and is pushed, the same with absurd numbers, with NaN, and with turns. Most of them are standing
+ticks, which are cheap, so the median of a walk is more informative than that of all.
 """
 
 
