@@ -28,8 +28,9 @@ fmu: build ## the core as an FMU for Simulink, OpenModelica or Dymola, build/sad
 site: playground .venv/installed-site ## the documentation as a site, build/site/index.html
 	@$(BIN)/python tools/site.py build/site
 
-release: site fmu ## wheel, sources, site, playground and FMU of a clean tag, in build/release
+release: site fmu .venv/installed-test .venv/installed-release ## all files of a clean tag, in build/release, each tried
 	@$(BIN)/python tools/release.py build/release
+	@$(BIN)/pytest -m release --quiet --junit-xml build/reports/release.xml
 
 cross-compiler:
 	@echo | arm-none-eabi-gcc --specs=picolibc.specs -x c -E - >/dev/null 2>&1 || \
@@ -96,7 +97,7 @@ TARGETS := cortex-m4f cortex-m7 cortex-m33 cortex-m3 rv32imafc i686 powerpc wasm
 
 # The Python tests, a file to each processor; those without targets of their own.
 PARALLEL := --numprocesses auto --dist loadfile
-MINUTES := not socketcan and not flood and not memory and not targets
+MINUTES := not socketcan and not flood and not memory and not targets and not release
 
 # $(call run_tests,BUILD_DIR,CTEST_PRESET,ENVIRONMENT_OF_PYTEST,MARKED)
 define run_tests
@@ -154,7 +155,7 @@ build-wasm32/build.ninja: PRESET := wasm32
 
 # .venv/installed-EXTRA: this package, editable, and what its optional dependency EXTRA names.
 .venv/installed-build: .venv/bin/pip
-.venv/installed-test .venv/installed-site .venv/installed-samples .venv/installed-bench .venv/installed-physics: .venv/installed-build
+.venv/installed-test .venv/installed-site .venv/installed-release .venv/installed-samples .venv/installed-bench .venv/installed-physics: .venv/installed-build
 .venv/installed-%: pyproject.toml requirements.lock firmware/core/include/saddlewalk/version.h
 	@echo "Installing Python packages: $*"
 	@PIP_CONSTRAINT=requirements.lock $(PIP) install --editable .[$*]

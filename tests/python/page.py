@@ -8,7 +8,7 @@ import time
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, Request, sync_playwright
 
 SADDLEWALK = [
     sys.executable,
@@ -37,20 +37,27 @@ def chromium() -> Iterator[Browser]:
 
 @contextlib.contextmanager
 def opened(browser: Browser, url: str, width: int = 1280, height: int = 1000) -> Iterator[Page]:
-    """A page, of which nothing may be written to the console and nothing asked from elsewhere."""
+    """A page of `saddlewalk view` at its first tick, watched."""
+    with watched(browser, url.split("?")[0], width, height) as page:
+        page.goto(url)
+        until(page, "document.body.dataset.tick !== undefined")
+        yield page
+
+
+@contextlib.contextmanager
+def watched(browser: Browser, here: str, width: int = 1200, height: int = 1200) -> Iterator[Page]:
+    """A page that must write nothing to the console, nor ask for what is not below `here`."""
     page = browser.new_page(viewport={"width": width, "height": height})
     page.set_default_timeout(TIMEOUT_MS)
     complaints: list[str] = []
     page.on("console", lambda message: complaints.append(message.text))
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    here = (url.split("?")[0], "data:")
 
-    def elsewhere(asked: str) -> bool:
-        return not asked.startswith(here)
+    def note(asked: Request) -> None:
+        if not asked.url.startswith((here, "data:")):
+            complaints.append(asked.url)
 
-    page.on("request", lambda asked: complaints.append(asked.url) if elsewhere(asked.url) else None)
-    page.goto(url)
-    until(page, "document.body.dataset.tick !== undefined")
+    page.on("request", note)
     yield page
     page.close()
     assert complaints == []

@@ -3,13 +3,9 @@ bits.
 """
 
 import json
-import os
 import platform
 import re
 import runpy
-import shutil
-import subprocess
-from functools import cache
 from pathlib import Path
 
 import can
@@ -17,39 +13,15 @@ import kconfiglib
 import pytest
 import yaml
 
+from builds import CONSUMERS, PROGRAM, arduino_sketch, cached, compile_c, cpp, platformio_walk, run
 from saddlewalk import paths
 from saddlewalk.transport.wire import Receiver
-from sanitizer import WITHOUT
 
 CHECKOUT = paths.CHECKOUT
-CONSUMERS = CHECKOUT / "tests/consumers"
-PROGRAM = CHECKOUT / "examples/minimal.c"
 CORE = CHECKOUT / "firmware/core"
 PACKAGE = runpy.run_path(str(CHECKOUT / "tools/package.py"))
 VERSION = PACKAGE["version"]()
 ERROR_BUILD = 6
-
-ENVIRONMENT = (
-    WITHOUT  # the sanitizer's runtime, if it was loaded for the tests, is not for compilers
-)
-
-
-@cache
-def cached(name: str) -> str:
-    """What the build under test was configured with."""
-    text = (paths.build_dir() / "CMakeCache.txt").read_text()
-    return re.search(rf"^{name}:\w+=(.*)$", text, re.MULTILINE)[1]
-
-
-def run(*command: str | Path, check: bool = True) -> subprocess.CompletedProcess:
-    result = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True)
-    if check and result.returncode != 0:
-        pytest.fail(f"{command}\n{result.stdout}{result.stderr}")
-    return result
-
-
-def compile_c(target: Path, *arguments: str | Path, check: bool = True):
-    return run(cached("CMAKE_C_COMPILER"), *arguments, "-o", target, "-lm", check=check)
 
 
 def configure(consumer: str, folder: Path, check: bool = True, **variables: str | Path):
@@ -163,21 +135,11 @@ def test_add_subdirectory(folder, walk, tmp_path):
     assert walk_of("add_subdirectory", tmp_path, **taken) == walk
 
 
-@pytest.fixture(scope="module")
-def cpp() -> list[str]:
-    """A compiler of C++, which needs no library of C++."""
-    for compiler in (cached("CMAKE_C_COMPILER"), "gcc", "clang"):
-        command = [compiler, "-x", "c++", "-std=c++11", "-fno-exceptions", "-Wall", "-Werror"]
-        if shutil.which(compiler) and not run(*command, "-E", os.devnull, check=False).returncode:
-            return command
-    pytest.skip("no compiler of C++: apt-get install clang")
-
-
-def test_headers_from_cpp(cpp, tmp_path):
+def test_headers_from_cpp(tmp_path):
     include = [f"-I{CORE / 'include'}", f"-I{CHECKOUT / 'firmware/wire/include'}"]
     source, compiled = tmp_path / "use.cpp", tmp_path / "use.o"
     source.write_text("#include <saddlewalk/wire.h>\nint main() { saddle_tick(0, 0, 0); }\n")
-    run(*cpp, *include, "-c", source, "-o", compiled)
+    run(*cpp(), *include, "-c", source, "-o", compiled)
     compile_c(
         tmp_path / "use",
         compiled,
@@ -186,16 +148,9 @@ def test_headers_from_cpp(cpp, tmp_path):
     )
 
 
-def test_arduino_library_builds_as_arduino_does_it(cpp, tmp_path):
-    """src is on the include path, all below it is compiled, and a sketch is C++."""
-    library = tmp_path / "Saddlewalk"
-    run(CHECKOUT / "tools/package.py", "arduino", library)
-    include = [f"-I{library / 'src'}", f"-I{CONSUMERS / 'arduino'}"]
-    sketch, compiled = library / "examples/Stand/Stand.ino", tmp_path / "sketch.o"
-    run(*cpp, *include, "-include", "Arduino.h", "-c", sketch, "-o", compiled)
-    sources = (library / "src").rglob("*.c")
-    compile_c(tmp_path / "sketch", *include, "-ffp-contract=off", compiled, *sources)
-    printed = run(tmp_path / "sketch").stdout.splitlines()
+def test_arduino_library_builds_as_arduino_does_it(tmp_path):
+    run(CHECKOUT / "tools/package.py", "arduino", tmp_path / "Saddlewalk")
+    printed = arduino_sketch(tmp_path / "Saddlewalk", tmp_path)
     assert len(printed) == 10
     assert printed[-1] == "1.014 m, level 1"
 
@@ -228,12 +183,7 @@ def test_platformio_manifest_is_current_and_builds(walk, tmp_path):
     assert len(manifest["description"]) <= 255
     assert (CHECKOUT / manifest["build"]["includeDir"] / manifest["headers"]).is_file()
     assert all((CHECKOUT / path).exists() for path in manifest["export"]["include"])
-    build = manifest["build"]
-    include = f"-I{CHECKOUT / build['includeDir']}"
-    flags = [flag.replace("-I", f"-I{CHECKOUT}/") for flag in build["flags"]]
-    sources = sorted((CHECKOUT / build["srcDir"]).rglob("*.c"))
-    compile_c(tmp_path / "walk", *flags, include, PROGRAM, *sources)
-    assert run(tmp_path / "walk").stdout == walk
+    assert platformio_walk(CHECKOUT, tmp_path) == walk
 
 
 def test_zephyr_module_builds_under_stand_ins_for_its_functions(walk, tmp_path):

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from page import chromium, table
+from page import chromium, table, watched
 from saddlewalk import paths
 from saddlewalk.cli import main
 from sanitizer import WITHOUT
@@ -29,14 +29,10 @@ def page():
         if made.returncode and "wasm" in made.stdout + made.stderr and "CI" not in os.environ:
             pytest.skip("WebAssembly: apt install clang lld wasi-libc libclang-rt-dev-wasm32")
         assert made.returncode == 0, made.stdout + made.stderr
-        page = browser.new_page(viewport={"width": 1200, "height": 1200})
-        complaints: list[str] = []
-        page.on("console", lambda message: complaints.append(message.text))
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda asked: complaints.append(asked.url))
-        page.goto(f"file://{paths.CHECKOUT}/build/playground.html")
-        yield page
-        assert complaints == [f"file://{paths.CHECKOUT}/build/playground.html"]
+        url = (paths.CHECKOUT / "build/playground.html").as_uri()
+        with watched(browser, url) as page:
+            page.goto(url)
+            yield page
 
 
 @pytest.fixture(autouse=True)
