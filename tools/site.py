@@ -17,6 +17,8 @@ from pathlib import Path
 from c_headers import LIBRARIES, entries
 from site_reference import WRITTEN
 
+from saddlewalk.formulas import drawn
+
 ROOT = Path(__file__).resolve().parents[1]
 LINK = re.compile(r"(!?)\[([^\]]+)\]\(([^)#\s]+)(#[^)]*)?\)")
 FRONT = {
@@ -24,6 +26,7 @@ FRONT = {
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
 }
+WITH_FORMULAS = ("equations.md", "joints.md", "glossary.md")
 
 
 def main() -> None:
@@ -38,7 +41,8 @@ def main() -> None:
         targets = _targets(pages)
         for page in pages.glob("*.md"):
             text = LINK.sub(lambda link: _link(link, pages), page.read_text())
-            page.write_text(_with_links(text, targets))
+            text = _with_links(text, targets)
+            page.write_text(drawn(text) if page.name in WITH_FORMULAS else text)
         playground = ROOT / "build/playground.html"
         if playground.exists():
             shutil.copy(playground, pages)

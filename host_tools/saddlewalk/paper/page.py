@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from saddlewalk import html_page
+from saddlewalk.formulas import drawn
 from saddlewalk.html_page import table
 from saddlewalk.paper.figures import Picture
 from saddlewalk.paper.numbers import Finding, Number, Simulations
@@ -212,7 +213,7 @@ def _credits(trials: Sequence[Trial]) -> str:
 
 def _readings_table() -> str:
     rows = [[each.tag, each.label, each.equation, each.words] for each in readings()]
-    return table(("tag", "paper", "equation", "reading and range"), rows)
+    return drawn(table(("tag", "paper", "equation", "reading and range"), rows))
 
 
 def _known(value: float, decimals: int) -> str:
