@@ -53,6 +53,7 @@ WRITERS = [
     Writer("plan --schedule {schedule} --config {toml}", "--picture", "plan.svg"),
     Writer("supervise --in {states} --config {toml}", "--out", "scores.csv"),
     Writer("replay {walk}", "--out", "scores.csv"),
+    Writer("replay {walk}", "--log", "walk.lcmlog"),
     Writer("follow {walk} {other} --config {toml}", "--out", "follow.csv"),
     Writer("follow {walk} {other} --config {toml}", "--json", "follow.json"),
     Writer("follow {walk} {other} --config {toml}", "--picture", "follow.png"),

@@ -4,6 +4,7 @@ import collections
 import csv
 import dataclasses
 import math
+import re
 import subprocess
 import sys
 import time
@@ -330,6 +331,20 @@ def test_a_replay_gives_the_same_bits_each_time(capsys, tmp_path):
         assert main(["replay", str(trial), "--out", str(tmp_path / run)]) == 0
         written.append((tmp_path / run).read_bytes())
     assert written[0] == written[1]
+
+
+def test_a_replay_s_log_is_reported_and_recomputed(capsys, tmp_path):
+    walk, log = tmp_path / "walk.csv", tmp_path / "walk.lcmlog"
+    walk.write_text(csv_text(Walk(speed_m_s=1.1, duration_s=8).recording()))
+    assert main(["replay", str(walk), "--log", str(log)]) == 0
+    assert main(["rerun", str(log)]) == 0
+    capsys.readouterr()
+    assert main(["report", str(log)]) == 0
+    steps = int(re.search(r", (\d+) steps, 8\.\d m;", capsys.readouterr().out)[1])
+    assert steps > 10
+    assert "The person took" in (tmp_path / "walk.lcmlog.html").read_text()
+    assert main(["replay", str(walk), "--log", str(log), "--view"]) == 2
+    assert "--log is written in lockstep" in capsys.readouterr().err
 
 
 def test_implausible_walks_are_reported(capsys, tmp_path):

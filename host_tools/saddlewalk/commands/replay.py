@@ -2,7 +2,10 @@
 
 import argparse
 import sys
-from contextlib import nullcontext
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.commands.view import add_view_options
@@ -45,6 +48,12 @@ def add_parser(subparsers: Any) -> None:
     add_view_options(parser, "show the walk in the browser, in real time")
     add_body_options(parser)
     add_output(parser, "--out", metavar="FILE", help="states and scores of every tick as CSV")
+    add_output(
+        parser,
+        "--log",
+        metavar="FILE",
+        help="in lockstep: what the firmware publishes as an LCM log, for report and view",
+    )
     parser.set_defaults(run=run)
 
 
@@ -72,16 +81,15 @@ def run(args: argparse.Namespace) -> int:
     states = {state["t_s"]: state for state in states_at_ticks(recording, gait.contact)}
     options = host_arguments(load_config(args))
     spec = args.can or private_udp()
-    lcm = "none" if clock == "lockstep" else args.lcm
-    lcm_option = [f"--lcm={lcm}"] if lcm else []
     play = play_lockstep if clock == "lockstep" else play_realtime
     page = page_beside(args, recording.source, controls=False) if args.view else nullcontext()
     with page as shown:
-        with (
-            open_bus(spec) as bus,
-            running_host(f"--can={spec}", f"--clock={clock}", *lcm_option, *options),
-        ):
-            answers = list(play(bus, measurements(states.values())))
+        with _log(args.log) as log:
+            lcm = log or ("none" if clock == "lockstep" else args.lcm)
+            options += [f"--lcm={lcm}"] if lcm else []
+            host = running_host(f"--can={spec}", f"--clock={clock}", *options)
+            with open_bus(spec) as bus, host:
+                answers = list(play(bus, measurements(states.values())))
         _finish(args, recording, gait, states, answers)
         if shown:
             shown.show_until_interrupted()
@@ -92,7 +100,25 @@ def _clock(args: argparse.Namespace) -> str:
     """The chosen clock; a page shows real time."""
     if args.view and args.clock == "lockstep":
         raise UserError("--view shows a walk in real time: leave --clock lockstep out")
-    return args.clock or ("realtime" if args.view else "lockstep")
+    clock: str = args.clock or ("realtime" if args.view else "lockstep")
+    if args.log and clock != "lockstep":
+        raise UserError("--log is written in lockstep: leave --view and --clock realtime out")
+    return clock
+
+
+@contextmanager
+def _log(path: str | None) -> Iterator[str | None]:
+    """An LCM URL by which the host writes a log; it is at `path` when the host has ended."""
+    from saddlewalk.atomic_write import atomic_file
+
+    if path is None:
+        yield None
+        return
+    with tempfile.TemporaryDirectory(prefix="saddlewalk-") as folder:
+        log = Path(folder) / "walk.lcmlog"
+        yield f"file://{log}?mode=w"
+        with atomic_file("--log", path, "wb") as file:
+            file.write(log.read_bytes())
 
 
 def _finish(
