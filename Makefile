@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/pip --disable-pip-version-check --quiet
 
-.PHONY: build demo amalgamation controller coverage prove rules fuzz mutants soak test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground fmu site release samples physics bench-baselines format lint clean help
+.PHONY: build demo amalgamation controller coverage prove rules fuzz mutants soak test test-clang test-sanitize test-exhaustive test-socketcan test-flood test-memory test-targets cross-compiler playground fmu site links release samples physics bench-baselines format lint clean help
 
 build: build/build.ninja ## the firmware, its host process and .venv/bin/saddlewalk (the default)
 	@$(BIN)/ninja -C build --quiet
@@ -27,6 +27,9 @@ fmu: build ## the core as an FMU for Simulink, OpenModelica or Dymola, build/sad
 
 site: playground .venv/installed-site ## the documentation as a site, build/site/index.html
 	@$(BIN)/python tools/site.py build/site
+
+links: site ## every link of the site, those to other sites too, which needs the internet
+	@$(BIN)/linkchecker --no-status --check-extern build/site/index.html
 
 release: site fmu .venv/installed-test .venv/installed-release ## all files of a clean tag, in build/release, each tried
 	@$(BIN)/python tools/release.py build/release
