@@ -21,7 +21,7 @@ LIBRARIES = {
         f"joints/include/saddlewalk/{name}.h"
         for name in ("joints", "estimator", "joint_command", "joint_walk")
     ],
-    "wire": ["wire/include/saddlewalk/wire.h", "wire/include/saddlewalk/cmac.h"],
+    "wire": [f"wire/include/saddlewalk/{name}.h" for name in ("wire", "wire_joints", "cmac")],
 }
 SETTINGS = """
 INPUT = {headers}

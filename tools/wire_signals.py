@@ -62,6 +62,25 @@ def complaints(message: Message) -> Iterator[str]:
             yield f"{message.name}.{signal.name} {problem}"
 
 
+def layout(message: Message) -> list[tuple[str, int, int, float]]:
+    return [(s.name, s.start, s.length, float(s.scale)) for s in message.signals]
+
+
+def differences(messages: list[Message]) -> Iterator[str]:
+    """Of frames that C packs alike: of the left and the right, and of all joints."""
+    found = {message.name: message for message in messages}
+    twins = [(name, name.replace("RIGHT", "LEFT")) for name in found]
+    for kind in ("JOINT_", "GAINS_"):
+        names = [name for name in found if name.startswith(kind)]
+        twins += [(name, names[0]) for name in names]
+        identifiers = [found[name].frame_id for name in names]
+        if identifiers != list(range(identifiers[0], identifiers[0] + len(names))):
+            yield f"the identifiers of {kind}xxx must be one after the other"
+    for one, other in twins:
+        if layout(found[one]) != layout(found[other]):
+            yield f"the signals of {one} must lie as those of {other}"
+
+
 def crc_of(byte: int) -> int:
     for _ in range(8):
         byte = (byte << 1) ^ (0x100 | CRC_POLYNOMIAL if byte & 0x80 else 0)
@@ -101,7 +120,8 @@ def header(messages: list[Message]) -> Iterator[str]:
 def main() -> None:
     dbc, out = map(Path, sys.argv[1:])
     messages = cantools.database.load_file(dbc).messages
-    if wrong := [text for message in messages for text in complaints(message)]:
+    wrong = [text for message in messages for text in complaints(message)]
+    if wrong := wrong or list(differences(messages)):
         sys.exit("\n".join(f"{dbc}: {text}" for text in wrong))
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text("\n".join(header(messages)) + "\n")

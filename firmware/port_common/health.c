@@ -12,6 +12,7 @@ saddle_wire_health_t saddle_health(const saddle_timing_t *timing, const saddle_i
         .latency_max_us = timing->latency_max_us,
         .command_source = (uint8_t)inbox->authority,
         .sender_clock = inbox->sender_clock,
+        .by_sensors = inbox->by_sensors,
         .input_age_us = {[SADDLE_WIRE_COMMAND] = input->command_age_us,
                          [SADDLE_WIRE_MEASURED_COM] = input->measurement.com.age_us,
                          [SADDLE_WIRE_MEASURED_LEFT] = input->measurement.foot[SADDLE_LEFT].age_us,

@@ -5,6 +5,11 @@
 #define MEASURED_SET                                                    \
     (1u << SADDLE_WIRE_MEASURED_COM | 1u << SADDLE_WIRE_MEASURED_LEFT | \
      1u << SADDLE_WIRE_MEASURED_RIGHT)
+#define SENSED_SET                                                            \
+    (1u << SADDLE_WIRE_SENSED_GYRO | 1u << SADDLE_WIRE_SENSED_ACCELEROMETER | \
+     1u << SADDLE_WIRE_SENSED_LOADS | 1u << SADDLE_WIRE_SENSED_LEFT_HIP |     \
+     1u << SADDLE_WIRE_SENSED_LEFT_LEG | 1u << SADDLE_WIRE_SENSED_RIGHT_HIP | \
+     1u << SADDLE_WIRE_SENSED_RIGHT_LEG)
 
 /** Ticks and times of sets do not come so far apart. */
 #define GAP_US (SADDLE_TICK_US * 3u / 2u)
@@ -66,16 +71,27 @@ static bool is_newer(saddle_inbox_t *inbox, saddle_wire_message_t message, const
     return known && (*age_from_us >= held_us || held_us > time_us);
 }
 
+/** The set that the port uses. */
+static uint32_t set_of(const saddle_inbox_t *inbox)
+{
+    return inbox->by_sensors ? SENSED_SET : MEASURED_SET;
+}
+
 static void take_measured(saddle_inbox_t *inbox, saddle_wire_message_t message, const uint8_t *data,
                           uint64_t time_us)
 {
     const uint8_t counter = saddle_wire_counter(data);
     uint64_t age_from_us;
+    if ((set_of(inbox) & 1u << message) == 0u) {
+        ++inbox->frames_unused;
+        return;
+    }
     if (!is_newer(inbox, message, data, time_us, &age_from_us)) {
         ++inbox->frames_late;
         return;
     }
     saddle_wire_decode_measured(message, data, &inbox->input.measurement);
+    saddle_wire_decode_sensors(message, data, &inbox->sensors);
     note_age(inbox, message, age_from_us);
     if (counter != inbox->set_counter) {
         inbox->set = 0;
@@ -92,16 +108,16 @@ void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *
         saddle_command_t command;
         saddle_wire_decode_command(data, &command);
         saddle_inbox_take_command(inbox, SADDLE_SOURCE_CAN, &command, time_us);
-    } else if (message >= SADDLE_WIRE_MEASURED_COM && message <= SADDLE_WIRE_MEASURED_RIGHT) {
-        take_measured(inbox, message, data, time_us);
     } else if (message == SADDLE_WIRE_MEASURED_TIME) {
         take_time(inbox, data, time_us);
+    } else if (message != SADDLE_WIRE_NONE && message != SADDLE_WIRE_COMMAND_CODE) {
+        take_measured(inbox, message, data, time_us);
     }
 }
 
 bool saddle_inbox_set_complete(const saddle_inbox_t *inbox)
 {
-    return inbox->set == MEASURED_SET;
+    return inbox->set == set_of(inbox);
 }
 
 static uint32_t age_us(const saddle_inbox_t *inbox, saddle_wire_message_t message, uint64_t time_us)
@@ -120,11 +136,39 @@ const saddle_input_t *saddle_inbox_read(saddle_inbox_t *inbox, uint64_t time_us)
     saddle_measurement_t *measurement = &input->measurement;
     input->time_us = time_us;
     input->command_age_us = age_us(inbox, SADDLE_WIRE_COMMAND, time_us);
+    if (inbox->by_sensors) {
+        return input;
+    }
     measurement->com.age_us = age_us(inbox, SADDLE_WIRE_MEASURED_COM, time_us);
     measurement->foot[SADDLE_LEFT].age_us = age_us(inbox, SADDLE_WIRE_MEASURED_LEFT, time_us);
     measurement->foot[SADDLE_RIGHT].age_us = age_us(inbox, SADDLE_WIRE_MEASURED_RIGHT, time_us);
     inbox->set = 0;
     return input;
+}
+
+/** Of two frames the older. */
+static uint32_t age_of_both_us(const saddle_inbox_t *inbox, saddle_wire_message_t one,
+                               saddle_wire_message_t other, uint64_t time_us)
+{
+    const uint32_t one_us = age_us(inbox, one, time_us);
+    const uint32_t other_us = age_us(inbox, other, time_us);
+    return one_us > other_us ? one_us : other_us;
+}
+
+const saddle_sensors_t *saddle_inbox_sense(saddle_inbox_t *inbox, uint64_t time_us)
+{
+    saddle_sensors_t *sensors = &inbox->sensors;
+    sensors->time_us = time_us;
+    sensors->imu_age_us =
+        age_of_both_us(inbox, SADDLE_WIRE_SENSED_GYRO, SADDLE_WIRE_SENSED_ACCELEROMETER, time_us);
+    sensors->joints_age_us[SADDLE_LEFT] =
+        age_of_both_us(inbox, SADDLE_WIRE_SENSED_LEFT_HIP, SADDLE_WIRE_SENSED_LEFT_LEG, time_us);
+    sensors->joints_age_us[SADDLE_RIGHT] =
+        age_of_both_us(inbox, SADDLE_WIRE_SENSED_RIGHT_HIP, SADDLE_WIRE_SENSED_RIGHT_LEG, time_us);
+    sensors->load_age_us[SADDLE_LEFT] = age_us(inbox, SADDLE_WIRE_SENSED_LOADS, time_us);
+    sensors->load_age_us[SADDLE_RIGHT] = sensors->load_age_us[SADDLE_LEFT];
+    inbox->set = 0;
+    return sensors;
 }
 
 void saddle_inbox_release(saddle_inbox_t *inbox)
@@ -135,7 +179,7 @@ void saddle_inbox_release(saddle_inbox_t *inbox)
 uint32_t saddle_inbox_rejected(const saddle_inbox_t *inbox)
 {
     const saddle_wire_receiver_t *receiver = &inbox->receiver;
-    return inbox->frames_late + receiver->malformed + receiver->bad_crc + receiver->bad_version +
-           receiver->bad_counter + receiver->bad_code + inbox->commands_unusable +
-           inbox->commands_ignored + inbox->commands_foreign;
+    return inbox->frames_late + inbox->frames_unused + receiver->malformed + receiver->bad_crc +
+           receiver->bad_version + receiver->bad_counter + receiver->bad_code +
+           inbox->commands_unusable + inbox->commands_ignored + inbox->commands_foreign;
 }

@@ -5,6 +5,9 @@
  * A command's age counts from its reception, a measurement's from when it was sampled, if the sender
  * gives that time in MEASURED_TIME; else from its reception too.
  *
+ * Measured is a CoM and two feet, or by raw sensors: the port says which of the two is used. The frames
+ * of the other are counted, not used.
+ *
  * One source of commands has authority at a time. The commands of the other are counted, not
  * applied, even when the first goes silent: the plan then stops the walk.
  */
@@ -13,7 +16,7 @@
 
 #include "sender_clock.h"
 #include <saddlewalk/saddlewalk.h>
-#include <saddlewalk/wire.h>
+#include <saddlewalk/wire_joints.h>
 
 /** Same numbers as in status_t. */
 typedef enum {
@@ -26,12 +29,16 @@ typedef struct {
     saddle_source_t chosen; /**< the only one that may command; NONE: see saddle_inbox_release() */
     saddle_source_t authority; /**< the source that commands now */
     saddle_input_t input;      /**< ages as of the last saddle_inbox_read() */
+    bool by_sensors;           /**< set by the port: measured by SENSED frames, which an estimator
+                                    makes input.measurement of; else by MEASURED ones */
+    saddle_sensors_t sensors;  /**< ages as of the last saddle_inbox_sense() */
     saddle_wire_receiver_t receiver;
     saddle_sender_clock_t clock;
     bool lockstep;        /**< set by the port: what came is of age 0, whatever its time is */
     bool sender_clock;    /**< the last measurement's age counts from when it was sampled */
     uint32_t frames_late; /**< measured before what is held, or too long ago to know when */
     uint64_t age_from_us[SADDLE_WIRE_MESSAGE_COUNT]; /**< from when its age counts */
+    uint32_t frames_unused;                          /**< of the kind that by_sensors excludes */
     uint32_t came;                                   /**< bits of the messages received so far */
     uint32_t set; /**< bits of the messages with set_counter since the last read */
     uint8_t set_counter;
@@ -52,11 +59,16 @@ void saddle_inbox_take_frame(saddle_inbox_t *inbox, uint32_t id, const uint8_t *
 void saddle_inbox_take_command(saddle_inbox_t *inbox, saddle_source_t source,
                                const saddle_command_t *command, uint64_t time_us);
 
-/** All three measurements of one instant were received since the last read. */
+/** All measurements of one instant were received since the last read, or sense where they are by
+ *  sensors. */
 bool saddle_inbox_set_complete(const saddle_inbox_t *inbox);
 
-/** The input of a tick at time_us, with the age of each part at that time. */
+/** The input of a tick at time_us, with the age of each part at that time. By sensors: with the
+ *  measurement as it is. */
 const saddle_input_t *saddle_inbox_read(saddle_inbox_t *inbox, uint64_t time_us);
+
+/** The sensors at time_us, with the age of each part at that time. */
+const saddle_sensors_t *saddle_inbox_sense(saddle_inbox_t *inbox, uint64_t time_us);
 
 /** If the first source that commands has authority: release it for the next one that commands.
  *  For use when the walk has ended and commands are stale. */

@@ -99,6 +99,12 @@ static void print_start(const saddle_options_t *options, const saddle_runner_t *
     printf(SADDLE_PROGRAM " " SADDLE_VERSION ": CAN %s; LCM %s; clock %s; ",
            runner->bus->description, options->lcm != NULL ? runner->lcm->description : "none",
            options->lockstep ? "lockstep" : "realtime");
+    if (options->joints.passes != 0u) {
+        printf("measured by sensors, joints at %u Hz; ",
+               1000000u / saddle_joint_loop_period_us(&options->joints));
+    } else {
+        printf("measured by CoM and feet; ");
+    }
     saddle_print_commanders(options, runner->bus);
     if (realtime->fifo_priority != 0) {
         printf("; SCHED_FIFO %d", realtime->fifo_priority);
@@ -159,6 +165,7 @@ static int run(const saddle_options_t *options, ports_t *ports)
                        &ports->bus, &ports->lcm, stop_pipe[0]);
     runner.lcm_commands_fd = ports->lcm_commands_fd;
     saddle_gait_learner_init(&runner.learner, &options->config, &options->learning);
+    saddle_runner_drive_joints(&runner, &options->joints);
     if (!require_auth(&runner, options->command_key) ||
         !write_learned(options->learned, &runner.learner.config)) {
         return EXIT_BAD_INPUT;

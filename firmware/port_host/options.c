@@ -61,6 +61,38 @@ static bool set_field(const char *option, const char *text, fields_t *fields, vo
     return true;
 }
 
+/** Passes in a second, as passes in a tick. */
+static bool set_joints(saddle_options_t *options, const char *text)
+{
+    char *end;
+    const long rate_hz = strtol(text, &end, 10);
+    const long passes = rate_hz * (long)SADDLE_TICK_US / 1000000;
+    if (end == text || *end != '\0' || passes < (long)SADDLE_PASSES_MIN ||
+        passes > (long)SADDLE_PASSES_MAX || rate_hz * (long)SADDLE_TICK_US % 1000000 != 0 ||
+        SADDLE_TICK_US % (uint32_t)passes != 0u) {
+        return complain(
+            "joints", text,
+            "a rate that makes whole passes in a tick: 100, 125, 200, 250, 400, 500, 625, 800 or "
+            "1000 Hz");
+    }
+    options->joints.passes = (uint32_t)passes;
+    return true;
+}
+
+/** PART.NAME=VALUE. */
+static bool set_joint(saddle_options_t *options, const char *text)
+{
+    const size_t length = strcspn(text, ".=");
+    for (size_t i = 0; text[length] == '.' && i < SADDLE_JOINT_PARTS; ++i) {
+        const saddle_joint_part_t part = saddle_joint_part(i);
+        if (strlen(part.name) == length && memcmp(part.name, text, length) == 0) {
+            char *values = (char *)&options->joints + part.offset;
+            return set_field("joint", text + length + 1, part.field, values);
+        }
+    }
+    return complain("joint", text, "PART.NAME=VALUE, PART being legs, estimator, walk or drive");
+}
+
 static bool set_clock(saddle_options_t *options, const char *text)
 {
     options->lockstep = strcmp(text, "lockstep") == 0;
@@ -131,11 +163,21 @@ static void print_help(const saddle_options_t *defaults)
          "                     stride's departure, the others say how far each field may go\n"
          "  --learned FILE     write the configuration as learned to FILE, in the format of\n"
          "                     saddlewalk --config, when this process ends\n"
+         "  --joints HZ        measure by sensors and command the joints at this rate, of which\n"
+         "                     a tick is a whole number of passes: 100 to 1000, such as 500\n"
+         "  --joint PART.NAME=VALUE\n"
+         "                     a parameter of the legs, estimator, walk or drive; repeatable\n"
          "  --help             this text\n\n"
          "parameter                   default     from       to");
     print_fields(saddle_config_field, &defaults->config);
     puts("\nof --learn");
     print_fields(saddle_learning_field, &defaults->learning);
+    const saddle_joint_loop_config_t joints = saddle_joint_loop_default(&defaults->config);
+    for (size_t i = 0; i < SADDLE_JOINT_PARTS; ++i) {
+        const saddle_joint_part_t part = saddle_joint_part(i);
+        printf("\nof --joint %s.\n", part.name);
+        print_fields(part.field, (const char *)&joints + part.offset);
+    }
 }
 
 static bool take_option(saddle_options_t *options, int letter, char *argv[])
@@ -152,6 +194,8 @@ static bool take_option(saddle_options_t *options, int letter, char *argv[])
     case 'y': options->command_key = optarg; return true;
     case 'f': return set_fifo(options, optarg);
     case 'n': options->lcm_from_network = true; return true;
+    case 'j': return set_joints(options, optarg);
+    case 'J': return true; /* once the body is known, take_joints() */
     case ':':
         fprintf(stderr, SADDLE_PROGRAM ": %s: give a value (see --help)\n", argv[optind - 1]);
         return false;
@@ -203,21 +247,52 @@ static bool is_consistent(const saddle_options_t *options)
     return name == NULL;
 }
 
+static const struct option KNOWN[] = {{"can", required_argument, NULL, 'c'},
+                                      {"lcm", required_argument, NULL, 'l'},
+                                      {"clock", required_argument, NULL, 'k'},
+                                      {"ankle", required_argument, NULL, 'a'},
+                                      {"set", required_argument, NULL, 's'},
+                                      {"learn", required_argument, NULL, 'e'},
+                                      {"learned", required_argument, NULL, 'd'},
+                                      {"command-from", required_argument, NULL, 'm'},
+                                      {"fifo", required_argument, NULL, 'f'},
+                                      {"command-key", required_argument, NULL, 'y'},
+                                      {"lcm-from-network", no_argument, NULL, 'n'},
+                                      {"joints", required_argument, NULL, 'j'},
+                                      {"joint", required_argument, NULL, 'J'},
+                                      {"help", no_argument, NULL, 'h'},
+                                      {NULL, 0, NULL, 0}};
+
+static int next_letter(int argc, char *argv[])
+{
+    return getopt_long(argc, argv, ":", KNOWN, NULL);
+}
+
+/** The joints of the body that all other options describe. */
+static bool take_joints(saddle_options_t *options, int argc, char *argv[])
+{
+    const uint32_t passes = options->joints.passes;
+    options->joints = saddle_joint_loop_default(&options->config);
+    options->joints.passes = passes;
+    int letter;
+    optind = 1;
+    while ((letter = next_letter(argc, argv)) != -1) {
+        if (letter == 'J' && !set_joint(options, optarg)) {
+            return false;
+        }
+    }
+    const char *name = saddle_joint_loop_check(&options->joints);
+    if (name != NULL) {
+        fprintf(stderr,
+                SADDLE_PROGRAM ": --joint %s: give a value that suits the others, and the body of "
+                               "--set\n",
+                name);
+    }
+    return name == NULL;
+}
+
 saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *argv[])
 {
-    static const struct option known[] = {{"can", required_argument, NULL, 'c'},
-                                          {"lcm", required_argument, NULL, 'l'},
-                                          {"clock", required_argument, NULL, 'k'},
-                                          {"ankle", required_argument, NULL, 'a'},
-                                          {"set", required_argument, NULL, 's'},
-                                          {"learn", required_argument, NULL, 'e'},
-                                          {"learned", required_argument, NULL, 'd'},
-                                          {"command-from", required_argument, NULL, 'm'},
-                                          {"fifo", required_argument, NULL, 'f'},
-                                          {"command-key", required_argument, NULL, 'y'},
-                                          {"lcm-from-network", no_argument, NULL, 'n'},
-                                          {"help", no_argument, NULL, 'h'},
-                                          {NULL, 0, NULL, 0}};
     *options = (saddle_options_t){
         .can = "auto",
         .lcm = DEFAULT_LCM,
@@ -226,7 +301,7 @@ saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *
     };
     int letter;
     opterr = 0;
-    while ((letter = getopt_long(argc, argv, ":", known, NULL)) != -1) {
+    while ((letter = next_letter(argc, argv)) != -1) {
         if (letter == 'h') {
             print_help(options);
             return SADDLE_OPTIONS_HELP;
@@ -239,5 +314,6 @@ saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *
         fprintf(stderr, SADDLE_PROGRAM ": %s: give options only (see --help)\n", argv[optind]);
         return SADDLE_OPTIONS_WRONG;
     }
-    return is_consistent(options) ? SADDLE_OPTIONS_RUN : SADDLE_OPTIONS_WRONG;
+    return is_consistent(options) && take_joints(options, argc, argv) ? SADDLE_OPTIONS_RUN
+                                                                      : SADDLE_OPTIONS_WRONG;
 }

@@ -5,6 +5,7 @@
 #include "announce.h"
 #include "gait_learner.h"
 #include "inbox.h"
+#include "joint_loop.h"
 
 typedef struct {
     const char *can;       /**< for saddle_bus_open() */
@@ -17,6 +18,7 @@ typedef struct {
     int fifo_priority; /**< 0: the ordinary scheduler */
     saddle_config_t config;
     saddle_learning_config_t learning;
+    saddle_joint_loop_config_t joints;
     const char *learned; /**< file for what was learned; NULL: none */
 } saddle_options_t;
 
@@ -25,7 +27,7 @@ typedef enum { SADDLE_OPTIONS_RUN, SADDLE_OPTIONS_HELP, SADDLE_OPTIONS_WRONG } s
 /**
  * Read the options. SADDLE_OPTIONS_HELP: the help was printed. SADDLE_OPTIONS_WRONG: one line on
  * standard error names the option, its value and what would be right. Otherwise the configuration
- * has passed saddle_config_check(). The strings are argv's.
+ * has passed saddle_config_check(), and that of the joints its check. The strings are argv's.
  */
 saddle_parsed_t saddle_options_parse(saddle_options_t *options, int argc, char *argv[]);
 

@@ -20,10 +20,15 @@
  *  authenticated time can. */
 #define UNTIMED_TICKS 12
 
-/** The time of tick n in lockstep. */
+static uint32_t period_us(const saddle_runner_t *runner)
+{
+    return saddle_joint_loop_period_us(&runner->joints.config);
+}
+
+/** The time of the next pass in lockstep; where no joint is driven, each pass is a tick. */
 static uint64_t lockstep_us(const saddle_runner_t *runner)
 {
-    return (uint64_t)runner->timing.ticks * SADDLE_TICK_US;
+    return runner->passes * period_us(runner);
 }
 
 /** The reception time of something that has waited for waited_us. */
@@ -83,11 +88,24 @@ static void announce_first_bad_version(const saddle_wire_receiver_t *receiver, u
     }
 }
 
+/** Announced once; later ones are only counted. */
+static void announce_first_unused(const saddle_inbox_t *inbox, uint32_t before)
+{
+    if (before == 0 && inbox->frames_unused != 0) {
+        saddle_announce(inbox->by_sensors
+                            ? "MEASURED_COM, _LEFT or _RIGHT rejected: with --joints the wearer is "
+                              "measured by SENSED frames"
+                            : "SENSED frames rejected: without --joints the wearer is measured by "
+                              "MEASURED_COM, _LEFT and _RIGHT");
+    }
+}
+
 /** Announced once. */
 static void announce_untimed(saddle_runner_t *runner)
 {
     const saddle_inbox_t *inbox = &runner->inbox;
-    const bool measured = (inbox->came & 1u << SADDLE_WIRE_MEASURED_COM) != 0u;
+    const bool measured =
+        (inbox->came & (1u << SADDLE_WIRE_MEASURED_COM | 1u << SADDLE_WIRE_SENSED_GYRO)) != 0u;
     if (measured && !inbox->lockstep && !inbox->sender_clock &&
         ++runner->untimed_ticks == UNTIMED_TICKS) {
         saddle_announce(
@@ -100,9 +118,11 @@ static void announce_untimed(saddle_runner_t *runner)
 static void take_frame(saddle_runner_t *runner, const saddle_bus_frame_t *frame)
 {
     const uint32_t bad_version_before = runner->inbox.receiver.bad_version;
+    const uint32_t unused_before = runner->inbox.frames_unused;
     saddle_inbox_take_frame(&runner->inbox, frame->id, frame->data, frame->length,
                             arrival_us(runner, frame->waited_us));
     announce_first_bad_version(&runner->inbox.receiver, bad_version_before);
+    announce_first_unused(&runner->inbox, unused_before);
 }
 
 /** Receive the waiting frames; in lockstep, only until a set of measurements is complete. */
@@ -123,6 +143,16 @@ static void send_frame(saddle_runner_t *runner, const saddle_frame_t *frame)
     saddle_bus_frame_t raw = {.id = frame->id, .length = sizeof frame->data};
     memcpy(raw.data, frame->data, sizeof raw.data);
     saddle_bus_send(runner->bus, &raw);
+}
+
+static void send_joints(saddle_runner_t *runner)
+{
+    saddle_frame_t frames[SADDLE_WIRE_JOINT_FRAMES];
+    saddle_wire_encode_joints(&runner->joints.commands, &runner->joints.estimate,
+                              (uint8_t)runner->passes, frames);
+    for (size_t i = 0; i < SADDLE_WIRE_JOINT_FRAMES; ++i) {
+        send_frame(runner, &frames[i]);
+    }
 }
 
 static void send_session(saddle_runner_t *runner)
@@ -193,6 +223,24 @@ static void tick(saddle_runner_t *runner, uint64_t time_us)
     if (is_commandless(&output)) {
         saddle_inbox_release(&runner->inbox);
     }
+    saddle_joint_loop_tick(&runner->joints, &output);
+}
+
+static void sense(saddle_runner_t *runner, uint64_t time_us)
+{
+    if (runner->inbox.by_sensors) {
+        const saddle_sensors_t *sensors = saddle_inbox_sense(&runner->inbox, time_us);
+        runner->inbox.input.measurement = *saddle_joint_loop_sense(&runner->joints, sensors);
+    }
+}
+
+static void drive(saddle_runner_t *runner, uint64_t time_us)
+{
+    if (runner->inbox.by_sensors) {
+        saddle_joint_loop_drive(&runner->joints, &runner->context, time_us);
+        send_joints(runner);
+    }
+    ++runner->passes;
 }
 
 /** Wait for input, or until a time; 0: without a limit. False: the loop must end. */
@@ -217,31 +265,41 @@ static bool wait(const saddle_runner_t *runner, uint64_t until_us)
            !FD_ISSET(runner->stop_fd, &readable);
 }
 
-/** The newest due time on the grid, from one that was due before. */
-static uint64_t newest_place_us(saddle_runner_t *runner, uint64_t due_us, uint64_t now_us)
+/** The newest due time on a grid, from one that was due before. */
+static uint64_t newest_place_us(uint64_t due_us, uint64_t now_us, uint32_t step_us)
 {
-    const uint64_t missed = (now_us - due_us) / SADDLE_TICK_US;
-    runner->timing.missed_ticks += (uint32_t)missed;
-    return due_us + missed * SADDLE_TICK_US;
+    return now_us > due_us ? due_us + (now_us - due_us) / step_us * step_us : due_us;
+}
+
+/** Returns when the next tick is due. */
+static uint64_t tick_in_time(saddle_runner_t *runner, uint64_t due_us, uint64_t awake_us)
+{
+    const uint64_t newest_us = newest_place_us(due_us, awake_us, SADDLE_TICK_US);
+    runner->timing.missed_ticks += (uint32_t)((newest_us - due_us) / SADDLE_TICK_US);
+    saddle_timing_begin(&runner->timing, newest_us, awake_us);
+    tick(runner, newest_us);
+    saddle_timing_end(&runner->timing, newest_us + SADDLE_TICK_US, saddle_now_us());
+    return newest_us + SADDLE_TICK_US;
 }
 
 static void run_realtime(saddle_runner_t *runner)
 {
     uint64_t due_us = saddle_now_us() + SADDLE_TICK_US;
+    uint64_t tick_us = due_us;
     while (wait(runner, due_us)) {
         const uint64_t awake_us = saddle_now_us();
-        if (awake_us > due_us) {
-            due_us = newest_place_us(runner, due_us, awake_us);
-        }
         take_frames(runner);
         take_lcm_commands(runner);
         if (awake_us < due_us) {
             continue;
         }
-        saddle_timing_begin(&runner->timing, due_us, awake_us);
-        tick(runner, due_us);
-        due_us += SADDLE_TICK_US;
-        saddle_timing_end(&runner->timing, due_us, saddle_now_us());
+        due_us = newest_place_us(due_us, awake_us, period_us(runner));
+        sense(runner, due_us);
+        if (due_us >= tick_us) {
+            tick_us = tick_in_time(runner, tick_us, awake_us);
+        }
+        drive(runner, due_us);
+        due_us += period_us(runner);
     }
 }
 
@@ -257,9 +315,13 @@ static void run_lockstep(saddle_runner_t *runner)
         take_frames(runner);
         if (is_lockstep_due(runner)) {
             const uint64_t due_us = lockstep_us(runner);
-            saddle_timing_begin(&runner->timing, due_us, due_us);
-            tick(runner, due_us);
-            saddle_timing_end(&runner->timing, due_us, due_us);
+            sense(runner, due_us);
+            if (due_us % SADDLE_TICK_US == 0u) {
+                saddle_timing_begin(&runner->timing, due_us, due_us);
+                tick(runner, due_us);
+                saddle_timing_end(&runner->timing, due_us, due_us);
+            }
+            drive(runner, due_us);
         } else {
             saddle_bus_maintain(runner->bus);
         }
@@ -277,10 +339,16 @@ void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, 
     runner->inbox.lockstep = lockstep;
 }
 
+void saddle_runner_drive_joints(saddle_runner_t *runner, const saddle_joint_loop_config_t *config)
+{
+    (void)saddle_joint_loop_init(&runner->joints, config);
+    runner->inbox.by_sensors = config->passes != 0u;
+}
+
 void saddle_runner_require_auth(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH])
 {
-    saddle_inbox_init(&runner->inbox, SADDLE_SOURCE_CAN);
-    runner->inbox.lockstep = runner->lockstep;
+    runner->inbox.chosen = SADDLE_SOURCE_CAN;
+    runner->inbox.authority = SADDLE_SOURCE_CAN;
     saddle_wire_require_auth(&runner->inbox.receiver, key);
     open_session(runner);
 }

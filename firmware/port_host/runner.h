@@ -9,11 +9,16 @@
  * Lockstep: a set of the three MEASURED_xxx frames with one counter triggers one tick. The time of
  * tick n is n * 80 ms, a frame's that of the next tick, and a tick takes no time: measurements are
  * of age 0, and the same frames give the same bits.
+ *
+ * Where joints are driven there are several passes in a tick, by sensors and with commands of their
+ * own. A tick is made in the first pass at or after its time. In lockstep a set of the SENSED_xxx frames
+ * triggers a pass, of which the first and every so many more tick.
  */
 #ifndef SADDLEWALK_HOST_RUNNER_H
 #define SADDLEWALK_HOST_RUNNER_H
 
 #include "gait_learner.h"
+#include "joint_loop.h"
 #include "report.h"
 
 typedef struct {
@@ -25,6 +30,8 @@ typedef struct {
     uint32_t untimed_ticks; /**< with measurements of a sender without a clock */
     saddle_context_t context;
     saddle_gait_learner_t learner; /**< off, unless it was initialised otherwise */
+    saddle_joint_loop_t joints;    /**< off, unless saddle_runner_drive_joints() was called */
+    uint64_t passes;               /**< so far */
     saddle_inbox_t inbox;
     saddle_timing_t timing;
     saddle_realtime_t realtime;
@@ -36,6 +43,9 @@ typedef struct {
 void saddle_runner_init(saddle_runner_t *runner, const saddle_config_t *config, bool lockstep,
                         saddle_source_t command_from, saddle_bus_t *bus, saddle_lcm_port_t *lcm,
                         int stop_fd);
+
+/** Measure by sensors and drive joints. config has passed saddle_joint_loop_check(). */
+void saddle_runner_drive_joints(saddle_runner_t *runner, const saddle_joint_loop_config_t *config);
 
 /** Require authenticated commands, docs/authentication.md; commands by LCM have no codes. */
 void saddle_runner_require_auth(saddle_runner_t *runner, const uint8_t key[SADDLE_CMAC_LENGTH]);

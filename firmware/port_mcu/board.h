@@ -18,9 +18,9 @@ bool saddle_can_send(const saddle_can_frame_t *frame);
 /** Monotonic, in microseconds. */
 uint64_t saddle_clock_now_us(void);
 
-/** Number of timer periods so far: tick n is due at n * SADDLE_TICK_US of the clock. Wraps
- *  after ten years. */
-uint32_t saddle_clock_ticks_due(void);
+/** Number of timer periods so far: that of the ticks, SADDLE_TICK_US, or of the passes where joints are
+ *  driven, saddle_joint_loop_period_us(). Round n is due at n periods of the clock. */
+uint64_t saddle_clock_rounds(void);
 
 /** 32 bits that nobody can predict, from a source of the hardware: for codes, once a session. False:
  *  there are none yet, or no such source; until there are, no command is accepted where codes are

@@ -4,8 +4,9 @@
 
 #include <saddlewalk/wire.h>
 
-/** A power of 2. Enough for an output, or for 100 ms of measurements at 100 Hz. */
-#define SADDLE_CAN_QUEUE 32u
+/** A power of 2. Enough for an output and the commands of all joints, or for 100 ms of measurements at
+ *  100 Hz. */
+#define SADDLE_CAN_QUEUE 64u
 
 /** A classic data frame with an 11-bit identifier. */
 typedef struct {

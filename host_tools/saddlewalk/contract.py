@@ -37,6 +37,7 @@ LEVELS = _words("saddle_level_t", "SADDLE_LEVEL_")
 REASONS = _words("saddle_reason_t", "SADDLE_REASON_")
 STATUSES = _names("saddle_status_t", "SADDLE_")
 FAULTS = _bits("saddle_fault_t", "SADDLE_FAULT_")
+SENSOR_FAULTS = _bits("saddle_sensor_fault_t", "SADDLE_SENSOR_")
 LIMITS = _bits("saddle_limit_t", "SADDLE_LIMIT_")
 
 LEFT, RIGHT = map(SIDES.index, ("left", "right"))

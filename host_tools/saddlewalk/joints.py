@@ -38,6 +38,30 @@ def legs(height_m: float, mass_kg: float, measured: Mapping[str, float] | None =
     return result
 
 
+def loop_settings(config: Any) -> list[tuple[str, str, float]]:
+    """Part, name and value of every field of saddle_joint_loop_default() for a
+    saddle_config_t, in the order of a controller's settings.
+    """
+    lib = library()
+    walk = ffi().new("saddle_joint_walk_config_t *", lib.saddle_joint_walk_default())
+    walk.double_support_share = config.double_support_share
+    estimator = ffi().new("saddle_estimator_config_t *", lib.saddle_estimator_default())
+    drive = ffi().new("saddle_drive_config_t *", lib.saddle_drive_default())
+    settings = []
+    for part, field_at, values in (
+        ("legs", lib.saddle_legs_field, legs(config.body_height_m, config.body_mass_kg)),
+        ("estimator", lib.saddle_estimator_field, estimator),
+        ("walk", lib.saddle_joint_walk_field, walk),
+        ("drive", lib.saddle_drive_field, drive),
+    ):
+        index = 0
+        while (field := field_at(index)) != ffi().NULL:
+            place = ffi().cast("float *", ffi().cast("char *", values) + field.offset)
+            settings.append((part, ffi().string(field.name).decode(), place[0]))
+            index += 1
+    return settings
+
+
 def inverse(body: Any, trunk: Any, feet: Any) -> tuple[Any, Any]:
     """saddle_inverse(): the saddle_joints_t * of a saddle_trunk_t * and two saddle_foot_t, and what
     had to give way, a saddle_reach_t.

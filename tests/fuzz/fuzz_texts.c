@@ -46,16 +46,15 @@ static void datagram(const fuzz_bytes_t *bytes)
 
 static void settings(fuzz_bytes_t *bytes)
 {
-    uint32_t page[128];
-    saddle_config_t config = saddle_config_default(1.79f, 63.3f);
-    bool lockstep = false;
+    uint32_t page[256];
+    saddle_settings_t settings = {.config = saddle_config_default(1.79f, 63.3f)};
     fuzz_take(bytes, page, sizeof page);
     page[SADDLE_SETTINGS_CRC] ^= saddle_settings_crc(page); /* fits where the input has a 0 */
-    const bool fits = saddle_settings_read(page, &config, &lockstep);
+    const bool fits = saddle_settings_read(page, &settings);
     REQUIRE(fits == (page[SADDLE_SETTINGS_CRC] == saddle_settings_crc(page)));
     static saddle_context_t context;
-    const bool accepted = saddle_init(&context, &config) == SADDLE_OK;
-    REQUIRE(accepted == (saddle_config_check(&config) == NULL));
+    const bool accepted = saddle_init(&context, &settings.config) == SADDLE_OK;
+    REQUIRE(accepted == (saddle_config_check(&settings.config) == NULL));
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -38,9 +38,9 @@ uint64_t saddle_clock_now_us(void)
     return any_uint64;
 }
 
-uint32_t saddle_clock_ticks_due(void)
+uint64_t saddle_clock_rounds(void)
 {
-    return any_uint32;
+    return any_uint64;
 }
 
 void saddle_watchdog_feed(void) {}

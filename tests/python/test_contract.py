@@ -17,8 +17,8 @@ DATABASE = cantools.database.load_file(FIRMWARE / "wire/saddlewalk.dbc")
 
 
 def headers() -> str:
-    files = (FIRMWARE / "core/include/saddlewalk").rglob("*.h")
-    return "".join(header.read_text() for header in files)
+    rooms = (FIRMWARE / room / "include/saddlewalk" for room in ("core", "joints"))
+    return "".join(header.read_text() for room in rooms for header in room.rglob("*.h"))
 
 
 @pytest.mark.parametrize(
@@ -32,6 +32,7 @@ def headers() -> str:
         (r"SADDLE_REASON_(\w+) = \d", contract.REASONS),
         (r"SADDLE_LIMIT_(\w+) = 1u << \d", contract.LIMITS),
         (r"SADDLE_FAULT_(\w+) = 1u << \d", contract.FAULTS),
+        (r"SADDLE_SENSOR_(\w+) = 1u << \d", contract.SENSOR_FAULTS),
     ],
 )
 def test_names_are_those_of_the_headers(numbered, names):
@@ -103,6 +104,8 @@ TABLES = {
     ("RECOVERY", "FOOT"): numbered(contract.SIDES),
     ("BALANCE", "DRIVER"): numbered(contract.REASONS),
     ("INPUTS", "COMMAND_SOURCE"): SOURCES,
+    ("INPUTS", "MEASURED_BY"): {0: "COM", 1: "SENSORS"},
+    ("JOINTS_STATE", "FAULTS"): flags(contract.SENSOR_FAULTS),
     ("HEALTH", "STATUS"): numbered(contract.STATUSES),
     ("HEALTH", "LIMITS"): flags(contract.LIMITS),
 }

@@ -433,3 +433,108 @@ def test_help_lists_every_parameter():
     command = [paths.built("bin/saddlewalk-host"), "--help"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=WAIT_S, check=True)
     assert "body_mass_kg                 63.3        5      300" in done.stdout
+
+
+SENSED = {
+    "SENSED_GYRO": {"X": 0.0, "Y": 0.0, "Z": 0.0},
+    "SENSED_ACCELEROMETER": {"X": 0.0, "Y": 0.0, "Z": 9.81},
+    "SENSED_LOADS": {"LEFT": 310.0, "RIGHT": 310.0},
+}
+for _side in ("LEFT", "RIGHT"):
+    SENSED[f"SENSED_{_side}_HIP"] = {"YAW": 0.0, "ROLL": 0.0, "PITCH": -0.3}
+    SENSED[f"SENSED_{_side}_LEG"] = {"KNEE": 0.6, "ANKLE_PITCH": -0.3, "ANKLE_ROLL": 0.0}
+JOINTS_STATE_ID = 0xB0
+
+
+def joint_pass(host: Host) -> dict[str, dict[str, float]]:
+    """The messages up to the next JOINTS_STATE."""
+    messages = {}
+    deadline_s = time.monotonic() + WAIT_S
+    while "JOINTS_STATE" not in messages and time.monotonic() < deadline_s:
+        frame = host.bus.recv(WAIT_S)
+        name, signals = host.receiver.accept(frame)
+        messages[name] = signals
+    return messages
+
+
+def test_by_sensors_each_set_has_its_joint_commands_and_some_a_tick():
+    with lockstep("--joints=125") as host:
+        assert "; measured by sensors, joints at 125 Hz; " in host.first_line
+        for number in range(101):
+            host.send("MEASURED_TIME", TIME=8000 * number, CODE=0)
+            for name, values in SENSED.items():
+                host.send(name, **values)
+            messages = joint_pass(host)
+            assert len(messages) == 25 + (MESSAGES_PER_TICK if number % 10 == 0 else 0)
+            assert messages["JOINT_LEFT_KNEE"]["COUNTER"] == number % 16
+        assert messages["INPUTS"]["MEASURED_BY"] == 1
+        assert messages["SCORES_FORCE"]["FAULTS"] & 0b1111110 == 0  # nothing is stale
+        assert messages["JOINTS_STATE"]["FALLBACK"] == messages["JOINTS_STATE"]["FAULTS"] == 0
+        assert messages["GAINS_LEFT_KNEE"]["STIFFNESS"] > 100
+        assert messages["JOINT_LEFT_KNEE"]["ANGLE"] == pytest.approx(0.6, abs=0.1)
+        assert host.stop().startswith("11 ticks, 0 late, 0 missed")
+
+
+def test_in_real_time_lost_sensors_give_the_configured_behaviour_in_the_stated_time():
+    """estimator.max_age_s 20 ms and drive.max_age_s 240 ms after the last sensors: the first pass
+    that is older. Measured by what is sent, so that a busy machine makes it later by no more than
+    its own delay.
+    """
+    hold = "--joint=drive.fallback_stiffness=0.5"
+    with Host("--lcm=none", "--joints=125", hold) as host:
+        begin_s, sound, state = time.monotonic(), 0, {}
+        for number in itertools.count():
+            host.send("MEASURED_TIME", TIME=8000 * number, CODE=0)
+            for name, values in SENSED.items():
+                host.send(name, **values)
+            state = joint_pass(host)
+            sound = 0 if state["JOINTS_STATE"]["FALLBACK"] else sound + 1
+            if sound == 20:
+                break
+            assert time.monotonic() - begin_s < 2 * WAIT_S
+        lost_s = time.monotonic()
+        while state["JOINTS_STATE"]["FALLBACK"] == 0 and time.monotonic() - lost_s < WAIT_S:
+            state = joint_pass(host)
+        took_s = time.monotonic() - lost_s
+        assert 0.2 < took_s < 0.6
+        assert int(state["JOINTS_STATE"]["FAULTS"]) & 1  # IMU_STALE
+        knee, gains = state["JOINT_LEFT_KNEE"], state["GAINS_LEFT_KNEE"]
+        assert knee["TORQUE"] == 0
+        assert knee["ANGLE"] == pytest.approx(0.6, abs=0.01)
+        assert gains["STIFFNESS"] == pytest.approx(0.5 * 375, abs=0.5)
+        host.stop()
+
+
+@pytest.mark.parametrize(("option", "sent"), [((), SENSED), (("--joints=125",), STANDING)])
+def test_the_other_kind_of_measurement_is_rejected_and_announced(option, sent):
+    with Host("--lcm=none", *option) as host:
+        for name, values in sent.items():
+            host.send(name, **values)
+        tick = host.tick()
+        while "HEALTH" not in tick or tick["HEALTH"]["REJECTED_FRAMES"] == 0:
+            tick = host.tick()
+        assert tick["HEALTH"]["REJECTED_FRAMES"] == len(sent)
+        assert tick["INPUTS"]["MEASURED_BY"] == len(option)
+        begin = "MEASURED_COM, _LEFT or _RIGHT rejected" if option else "SENSED frames rejected"
+        host.stop(announced=(begin,))
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("--joints=300", "--joints 300: give a rate that makes whole passes in a tick"),
+        ("--joints=50", "--joints 50: give a rate"),
+        ("--joints=2000", "--joints 2000: give a rate"),
+        ("--joints=5x", "--joints 5x: give a rate"),
+        ("--joint=thigh_m=0.4", "--joint thigh_m=0.4: give PART.NAME=VALUE, PART being legs"),
+        ("--joint=arms.thigh_m=0.4", "--joint arms.thigh_m=0.4: give PART.NAME=VALUE"),
+        ("--joint=legs.thigh_m=4", "--joint thigh_m=4: give a number from 0.1 to 0.8"),
+        ("--joint=legs.hip_yaw_min_rad=2", "--joint hip_yaw_min_rad: give a value that suits"),
+    ],
+)
+def test_joint_options_that_are_wrong_are_named(option, words):
+    command = [paths.built("bin/saddlewalk-host"), "--can=udp", "--lcm=none", option]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=WAIT_S, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"saddlewalk-host: {words}")
+    assert done.stderr.count("\n") == 1

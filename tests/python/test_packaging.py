@@ -136,9 +136,10 @@ def test_add_subdirectory(folder, walk, tmp_path):
 
 
 def test_headers_from_cpp(tmp_path):
-    include = [f"-I{CORE / 'include'}", f"-I{CHECKOUT / 'firmware/wire/include'}"]
+    rooms = ("core", "joints", "wire")
+    include = [f"-I{CHECKOUT / 'firmware' / room / 'include'}" for room in rooms]
     source, compiled = tmp_path / "use.cpp", tmp_path / "use.o"
-    source.write_text("#include <saddlewalk/wire.h>\nint main() { saddle_tick(0, 0, 0); }\n")
+    source.write_text("#include <saddlewalk/wire_joints.h>\nint main() { saddle_tick(0, 0, 0); }\n")
     run(*cpp(), *include, "-c", source, "-o", compiled)
     compile_c(
         tmp_path / "use",

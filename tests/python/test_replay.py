@@ -54,7 +54,16 @@ PROCESS = {
         ("ACCEPTED", "MALFORMED", "BAD_CRC", "BAD_VERSION", "BAD_COUNTER"), 0
     ),
     "INPUTS": dict.fromkeys(
-        ("COMMAND_SOURCE", "SENDER_CLOCK", "COMMAND_AGE", "COM_AGE", "LEFT_AGE", "RIGHT_AGE"), 0
+        (
+            "COMMAND_SOURCE",
+            "SENDER_CLOCK",
+            "MEASURED_BY",
+            "COMMAND_AGE",
+            "COM_AGE",
+            "LEFT_AGE",
+            "RIGHT_AGE",
+        ),
+        0,
     ),
 }
 

@@ -86,6 +86,7 @@ def tick_frames(sender: Sender, **changed: float) -> list[can.Message]:
             "LEFT_AGE": 0,
             "RIGHT_AGE": 0,
             "SENDER_CLOCK": 1,
+            "MEASURED_BY": 0,
         },
         "HEALTH": {"STATUS": 0, "LIMITS": 0, "LATE_TICKS": 0, "REJECTED_FRAMES": 0},
     }

@@ -155,6 +155,34 @@ MEASURED = {
     "MEASURED_LEFT": {"X": "foot.0.cop_m.x", "Y": "foot.0.cop_m.y"},
     "MEASURED_RIGHT": {"X": "foot.1.cop_m.x", "Y": "foot.1.cop_m.y"},
 }
+JOINTS = "HIP_YAW HIP_ROLL HIP_PITCH KNEE ANKLE_PITCH ANKLE_ROLL".split()
+SIDES = ("LEFT", "RIGHT")
+SENSED = {
+    "SENSED_GYRO": {axis: f"gyro_rad_s.{axis.lower()}" for axis in "XYZ"},
+    "SENSED_ACCELEROMETER": {axis: f"accelerometer_m_s2.{axis.lower()}" for axis in "XYZ"},
+    "SENSED_LOADS": {side: f"load_n.{number}" for number, side in enumerate(SIDES)},
+} | {
+    f"SENSED_{side}_{part}": {
+        joint.removeprefix("HIP_"): f"angle_rad.{number}.{JOINTS.index(joint)}" for joint in joints
+    }
+    for number, side in enumerate(SIDES)
+    for part, joints in (("HIP", JOINTS[:3]), ("LEG", JOINTS[3:]))
+}
+JOINT = {"ANGLE": "angle_rad", "RATE": "rate_rad_s", "TORQUE": "torque_nm"}
+GAINS = {
+    "STIFFNESS": "stiffness",
+    "DAMPING": "damping",
+    "TORQUE_MIN": "torque_min_nm",
+    "TORQUE_MAX": "torque_max_nm",
+}
+COMMANDED = {
+    f"{kind}_{side}_{joint}": {
+        signal: f"joint.{number}.{JOINTS.index(joint)}.{field}" for signal, field in fields.items()
+    }
+    for kind, fields in (("JOINT", JOINT), ("GAINS", GAINS))
+    for number, side in enumerate(SIDES)
+    for joint in JOINTS
+}
 # Counts and codes: field of saddle_wire_health_t, the largest number that is sent (None: modulo
 # 65536), how much of the field is one unit of the signal.
 COUNTS = {
@@ -172,6 +200,7 @@ COUNTS = {
     "INPUTS": {
         "COMMAND_SOURCE": ("command_source", 3, 1),
         "SENDER_CLOCK": ("sender_clock", 1, 1),
+        "MEASURED_BY": ("by_sensors", 1, 1),
         "COMMAND_AGE": ("input_age_us.0", 4095, 1000),
         "COM_AGE": ("input_age_us.1", 4095, 1000),
         "LEFT_AGE": ("input_age_us.2", 4095, 1000),
@@ -184,7 +213,7 @@ COMMAND = {
     "HEEL_STRIKE": "heel_strike_rad",
     "TURN_RATE": "turn_rate_rad_s",
 }
-BYTE = {"TURN_RATE"}  # numbers of 8 bits; the others have 16
+BYTE = {"TURN_RATE", "TORQUE_MIN", "TORQUE_MAX"}  # numbers of 8 bits; the others have 16
 
 ffi = FFI()
 
@@ -244,9 +273,14 @@ def message_of(frame) -> can.Message:
     return can.Message(arbitration_id=frame.id, is_extended_id=False, data=bytes(frame.data))
 
 
-def assert_decoded(expected: float, value: float, scale: float) -> None:
+def last_of(signal: str) -> int:
+    """The largest raw value of a number."""
+    return 127 if signal in BYTE else 32767
+
+
+def assert_decoded(expected: float, value: float, scale: float, last: int = 32767) -> None:
     """Within half a step, or the end of the range, or nothing: independent of both codecs."""
-    end = 32767 * scale
+    end = last * scale
     if not math.isfinite(value):
         assert math.isnan(expected)
     else:
@@ -403,6 +437,68 @@ def test_measurement_both_ways(codec):
     assert c.accepted == python.accepted == INPUTS * len(MEASURED)
 
 
+def random_numbers(rng: random.Random, struct, messages):
+    """Fills the fields of a struct; what its frames must say."""
+    expected = {}
+    for message, signals in messages.items():
+        expected[message] = {}
+        for name, field in signals.items():
+            value = any_number(rng, scale_of(message, name), last_of(name))
+            expected[message][name] = value
+            put(struct, field, value)
+    return expected
+
+
+def test_sensors_both_ways(codec):
+    rng = random.Random(SEED + 4)
+    frames = ffi.new("saddle_frame_t[]", len(SENSED))
+    sensors, decoded = ffi.new("saddle_sensors_t *"), ffi.new("saddle_sensors_t *")
+    sender, python = wire.Sender(), wire.Receiver()
+    c = ffi.new("saddle_wire_receiver_t *")
+    for number in range(INPUTS):
+        expected = random_numbers(rng, sensors, SENSED)
+        codec.saddle_wire_encode_sensors(sensors, number % 256, frames)
+        for frame, (name, values) in zip(frames, expected.items(), strict=True):
+            sent = sender.frame(name, **values)
+            assert sent.data == bytes(frame.data), (name, values)
+            message = codec.saddle_wire_accept(c, frame.id, frame.data, 8)
+            assert message == getattr(codec, f"SADDLE_WIRE_{name}")
+            codec.saddle_wire_decode_sensors(message, frame.data, decoded)
+            _, received = python.accept(sent)
+            for signal, field in SENSED[name].items():
+                assert same(get(decoded, field), received[signal])
+                assert_decoded(received[signal], values[signal], scale_of(name, signal))
+    assert c.accepted == python.accepted == INPUTS * len(SENSED)
+
+
+def test_joint_commands_from_c_to_python(codec):
+    rng = random.Random(SEED + 5)
+    frames = ffi.new("saddle_frame_t[]", len(COMMANDED) + 1)
+    commands, estimate = ffi.new("saddle_joint_commands_t *"), ffi.new("saddle_estimate_t *")
+    sender, receiver = wire.Sender(), wire.Receiver()
+    for counter in range(OUTPUTS):
+        expected = random_numbers(rng, commands, COMMANDED)
+        commands.fallback = rng.random() < 0.5
+        estimate.faults, estimate.lost_joints = rng.randrange(2**16), rng.randrange(2**12)
+        expected["JOINTS_STATE"] = {
+            "FALLBACK": commands.fallback,
+            "FAULTS": estimate.faults,
+            "LOST_JOINTS": estimate.lost_joints,
+        }
+        codec.saddle_wire_encode_joints(commands, estimate, counter % 256, frames)
+        for frame, (name, values) in zip(frames, expected.items(), strict=True):
+            assert sender.frame(name, **values).data == bytes(frame.data), (name, values)
+            received_name, received = receiver.accept(message_of(frame))
+            assert received_name == name
+            for signal, value in values.items():
+                if name == "JOINTS_STATE":
+                    assert received[signal] == value
+                else:
+                    scale = scale_of(name, signal)
+                    assert_decoded(received[signal], value, scale, last_of(signal))
+    assert receiver.accepted == OUTPUTS * (len(COMMANDED) + 1)
+
+
 def test_command_both_ways(codec):
     rng = random.Random(SEED + 2)
     frame = ffi.new("saddle_frame_t *")
@@ -411,8 +507,7 @@ def test_command_both_ways(codec):
     c = ffi.new("saddle_wire_receiver_t *")
     for counter in range(INPUTS):
         values = {
-            name: any_number(rng, scale_of("COMMAND", name), 127 if name in BYTE else 32767)
-            for name in COMMAND
+            name: any_number(rng, scale_of("COMMAND", name), last_of(name)) for name in COMMAND
         }
         for name, field in COMMAND.items():
             put(command, field, values[name])

@@ -23,13 +23,14 @@ saddle_status_t __real_saddle_tick(saddle_context_t *context, const saddle_input
 saddle_status_t __wrap_saddle_tick(saddle_context_t *context, const saddle_input_t *input,
                                    saddle_output_t *output);
 
-bool __wrap_saddle_settings_read(const uint32_t *page, saddle_config_t *config, bool *lockstep);
+bool __wrap_saddle_settings_read(const uint32_t *page, saddle_settings_t *settings);
 
-bool __wrap_saddle_settings_read(const uint32_t *page, saddle_config_t *config, bool *lockstep)
+bool __wrap_saddle_settings_read(const uint32_t *page, saddle_settings_t *settings)
 {
     (void)page;
-    *config = saddle_config_default(1.79f, 63.3f);
-    *lockstep = false;
+    settings->config = saddle_config_default(1.79f, 63.3f);
+    settings->joints = saddle_joint_loop_default(&settings->config);
+    settings->lockstep = false;
     return true;
 }
 

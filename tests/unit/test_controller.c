@@ -13,7 +13,8 @@ static saddle_can_frame_t sent[4 * SADDLE_WIRE_OUTPUT_FRAMES];
 static uint32_t frames_sent, room, lost;
 static uint64_t now_us;
 static uint32_t sending_us; /* what each frame takes */
-static uint32_t ticks_due;
+static uint64_t rounds;
+static uint32_t period_us;
 static uint32_t feeds;
 static bool flood;
 static uint32_t random_bits; /* 0: none */
@@ -46,9 +47,9 @@ uint64_t saddle_clock_now_us(void)
     return now_us;
 }
 
-uint32_t saddle_clock_ticks_due(void)
+uint64_t saddle_clock_rounds(void)
 {
-    return ticks_due;
+    return rounds;
 }
 
 void saddle_watchdog_feed(void)
@@ -66,8 +67,9 @@ void setUp(void)
 {
     memset(&coming, 0, sizeof coming);
     room = sizeof sent / sizeof sent[0];
-    frames_sent = lost = sending_us = ticks_due = feeds = 0;
-    now_us = 0;
+    frames_sent = lost = sending_us = feeds = 0;
+    now_us = rounds = 0;
+    period_us = SADDLE_TICK_US;
     flood = false;
     random_bits = 0;
     config = saddle_config_default(1.79f, 63.3f);
@@ -79,8 +81,8 @@ void tearDown(void) {}
 /** The timer comes round; the loop sees it late by as much. */
 static void timer(uint32_t late_us)
 {
-    ++ticks_due;
-    now_us = (uint64_t)ticks_due * SADDLE_TICK_US + late_us;
+    ++rounds;
+    now_us = rounds * period_us + late_us;
     saddle_controller_step(&controller);
 }
 
@@ -158,7 +160,7 @@ static void test_result_of_saddle_init_is_returned(void)
 static void test_missed_ticks_are_counted_not_made_up_for(void)
 {
     timer(0);
-    ticks_due += 3;
+    rounds += 3;
     timer(0);
     TEST_ASSERT_EQUAL_UINT32(2, controller.timing.ticks);
     TEST_ASSERT_EQUAL_UINT32(3, controller.timing.missed_ticks);
@@ -289,6 +291,82 @@ static void test_where_no_codes_are_required_there_is_no_session(void)
     TEST_ASSERT_EQUAL_UINT32(SADDLE_WIRE_OUTPUT_FRAMES, frames_sent);
 }
 
+/** 40 passes in a tick, of 2 ms. */
+static void drive_joints(void)
+{
+    saddle_joint_loop_config_t joints = saddle_joint_loop_default(&config);
+    joints.passes = 40;
+    TEST_ASSERT_EQUAL_INT(SADDLE_OK, saddle_controller_drive_joints(&controller, &joints));
+    period_us = saddle_joint_loop_period_us(&joints);
+}
+
+static void bring_sensors(uint8_t number, uint64_t received_us)
+{
+    const saddle_sensors_t sensors = {.load_n = {310.0f, 310.0f},
+                                      .accelerometer_m_s2 = {.z = 9.8f}};
+    saddle_frame_t frames[SADDLE_WIRE_SENSED_FRAMES];
+    saddle_wire_encode_sensors(&sensors, number, frames);
+    for (size_t i = 0; i < SADDLE_WIRE_SENSED_FRAMES; ++i) {
+        bring(&frames[i], received_us);
+    }
+}
+
+static void test_joints_are_driven_many_times_in_a_tick(void)
+{
+    drive_joints();
+    for (uint32_t pass = 1; pass < 40u; ++pass) {
+        bring_sensors((uint8_t)pass, rounds * period_us + 1400u);
+        timer(100);
+        TEST_ASSERT_EQUAL_UINT32(SADDLE_WIRE_JOINT_FRAMES, frames_sent);
+        TEST_ASSERT_EQUAL_HEX16(0xB0, sent[frames_sent - 1u].id);
+        TEST_ASSERT_EQUAL_UINT8(pass & 15u, sent[0].data[1] & 15u);
+        TEST_ASSERT_EQUAL_UINT32(600, controller.inbox.sensors.imu_age_us);
+        frames_sent = 0;
+    }
+    TEST_ASSERT_EQUAL_UINT32(0, controller.timing.ticks);
+    timer(100);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_WIRE_OUTPUT_FRAMES + SADDLE_WIRE_JOINT_FRAMES, frames_sent);
+    TEST_ASSERT_EQUAL_HEX16(0x90, sent[SADDLE_WIRE_OUTPUT_FRAMES].id);
+    TEST_ASSERT_EQUAL_UINT32(1, controller.timing.ticks);
+    TEST_ASSERT_EQUAL_UINT64(SADDLE_TICK_US, controller.inbox.input.time_us);
+    TEST_ASSERT_EQUAL_UINT64(SADDLE_TICK_US, controller.joints.estimator.time_us);
+    TEST_ASSERT_EQUAL_UINT32(1, feeds);
+}
+
+static void test_a_tick_whose_pass_was_missed_is_made_in_the_next(void)
+{
+    drive_joints();
+    rounds = 42;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(1, controller.timing.ticks);
+    TEST_ASSERT_EQUAL_UINT32(0, controller.timing.missed_ticks);
+    TEST_ASSERT_EQUAL_UINT64(43u * 2000u, controller.inbox.input.time_us);
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(1, controller.timing.ticks);
+    rounds = 160;
+    timer(0);
+    TEST_ASSERT_EQUAL_UINT32(2, controller.timing.ticks);
+    TEST_ASSERT_EQUAL_UINT32(2, controller.timing.missed_ticks);
+}
+
+static void test_in_lockstep_a_set_of_sensors_makes_a_pass_due(void)
+{
+    (void)saddle_controller_init(&controller, &config, true);
+    drive_joints();
+    saddle_controller_step(&controller);
+    TEST_ASSERT_EQUAL_UINT32(0, frames_sent);
+    for (uint32_t pass = 0; pass < 41u; ++pass) {
+        frames_sent = 0;
+        bring_sensors((uint8_t)pass, 1);
+        saddle_controller_step(&controller);
+        const uint32_t ticked = pass % 40u == 0u ? SADDLE_WIRE_OUTPUT_FRAMES : 0u;
+        TEST_ASSERT_EQUAL_UINT32(ticked + SADDLE_WIRE_JOINT_FRAMES, frames_sent);
+        TEST_ASSERT_EQUAL_UINT64(2000u * pass, controller.joints.estimator.time_us);
+    }
+    TEST_ASSERT_EQUAL_UINT64(SADDLE_TICK_US, controller.inbox.input.time_us);
+    TEST_ASSERT_EQUAL_UINT32(2, controller.timing.ticks);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -307,5 +385,8 @@ int main(void)
     RUN_TEST(test_commands_with_codes_of_another_session_are_rejected);
     RUN_TEST(test_without_random_bits_there_is_no_session_until_there_are);
     RUN_TEST(test_where_no_codes_are_required_there_is_no_session);
+    RUN_TEST(test_joints_are_driven_many_times_in_a_tick);
+    RUN_TEST(test_a_tick_whose_pass_was_missed_is_made_in_the_next);
+    RUN_TEST(test_in_lockstep_a_set_of_sensors_makes_a_pass_due);
     return UNITY_END();
 }

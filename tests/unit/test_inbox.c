@@ -199,6 +199,100 @@ static void test_in_lockstep_every_age_is_0(void)
     TEST_ASSERT_FALSE(inbox.sender_clock);
 }
 
+static void sense_set(uint8_t number, size_t left_out, uint64_t time_us)
+{
+    const saddle_sensors_t sensors = {.accelerometer_m_s2 = {.z = 9.8f},
+                                      .load_n = {310.0f, 320.0f},
+                                      .angle_rad = {{[SADDLE_KNEE] = 0.5f}}};
+    saddle_frame_t frames[SADDLE_WIRE_SENSED_FRAMES];
+    saddle_wire_encode_sensors(&sensors, number, frames);
+    for (size_t i = 0; i < SADDLE_WIRE_SENSED_FRAMES; ++i) {
+        if (i != left_out) {
+            saddle_inbox_take_frame(&inbox, frames[i].id, frames[i].data, sizeof frames[i].data,
+                                    time_us);
+        }
+    }
+}
+
+#define ALL SADDLE_WIRE_SENSED_FRAMES
+
+static void test_sensors_are_read_with_the_age_of_their_older_frame(void)
+{
+    inbox.by_sensors = true;
+    sense_set(0, ALL, 1000);
+    TEST_ASSERT_TRUE(saddle_inbox_set_complete(&inbox));
+    const saddle_sensors_t *sensors = saddle_inbox_sense(&inbox, 1500);
+    TEST_ASSERT_FALSE(saddle_inbox_set_complete(&inbox));
+    TEST_ASSERT_EQUAL_UINT64(1500, sensors->time_us);
+    TEST_ASSERT_EQUAL_FLOAT(9.8f, sensors->accelerometer_m_s2.z);
+    TEST_ASSERT_EQUAL_FLOAT(320.0f, sensors->load_n[SADDLE_RIGHT]);
+    TEST_ASSERT_EQUAL_FLOAT(0.5f, sensors->angle_rad[SADDLE_LEFT][SADDLE_KNEE]);
+    static const struct {
+        size_t left_out; /* frame of a set */
+        uint32_t imu_us, left_us, right_us, loads_us;
+    } cases[] = {{0, 2000, 0, 0, 0}, {1, 2000, 0, 0, 0}, {2, 0, 0, 0, 2000}, {3, 0, 2000, 0, 0},
+                 {4, 0, 2000, 0, 0}, {5, 0, 0, 2000, 0}, {6, 0, 0, 2000, 0}, {ALL, 0, 0, 0, 0}};
+    for (uint8_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        const uint64_t time_us = 10000u * (i + 1u);
+        sense_set((uint8_t)(2u * i + 1u), ALL, time_us - 2000u);
+        sense_set((uint8_t)(2u * i + 2u), cases[i].left_out, time_us);
+        TEST_ASSERT_EQUAL(cases[i].left_out == ALL, saddle_inbox_set_complete(&inbox));
+        (void)saddle_inbox_sense(&inbox, time_us);
+        TEST_ASSERT_EQUAL_UINT32(cases[i].imu_us, sensors->imu_age_us);
+        TEST_ASSERT_EQUAL_UINT32(cases[i].left_us, sensors->joints_age_us[SADDLE_LEFT]);
+        TEST_ASSERT_EQUAL_UINT32(cases[i].right_us, sensors->joints_age_us[SADDLE_RIGHT]);
+        TEST_ASSERT_EQUAL_UINT32(cases[i].loads_us, sensors->load_age_us[SADDLE_LEFT]);
+        TEST_ASSERT_EQUAL_UINT32(cases[i].loads_us, sensors->load_age_us[SADDLE_RIGHT]);
+    }
+}
+
+static void test_sensors_that_never_came_are_never_old(void)
+{
+    inbox.by_sensors = true;
+    const saddle_sensors_t *sensors = saddle_inbox_sense(&inbox, 1500);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US, sensors->imu_age_us);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US, sensors->joints_age_us[SADDLE_RIGHT]);
+    TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US, sensors->load_age_us[SADDLE_LEFT]);
+}
+
+static void test_only_the_chosen_kind_of_measurement_is_used(void)
+{
+    sense_set(0, ALL, 1000);
+    TEST_ASSERT_EQUAL_UINT32(ALL, inbox.frames_unused);
+    TEST_ASSERT_EQUAL_UINT32(ALL, saddle_inbox_rejected(&inbox));
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, inbox.sensors.accelerometer_m_s2.z);
+    inbox.by_sensors = true;
+    send_set(0, SADDLE_WIRE_MEASURED_FRAMES, 2000);
+    TEST_ASSERT_EQUAL_UINT32(ALL + SADDLE_WIRE_MEASURED_FRAMES, inbox.frames_unused);
+    TEST_ASSERT_FALSE(saddle_inbox_set_complete(&inbox));
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, inbox.input.measurement.com.height_m);
+}
+
+/** What the estimator made of them has ages of its own. */
+static void test_by_sensors_a_tick_has_the_measurement_as_it_is(void)
+{
+    inbox.by_sensors = true;
+    inbox.input.measurement.com.age_us = 1234;
+    sense_set(0, ALL, 1000);
+    TEST_ASSERT_EQUAL_UINT32(1234, saddle_inbox_read(&inbox, 5000)->measurement.com.age_us);
+    TEST_ASSERT_EQUAL_UINT64(5000, inbox.input.time_us);
+    TEST_ASSERT_TRUE(saddle_inbox_set_complete(&inbox));
+}
+
+static void test_sensors_age_from_when_they_were_sampled(void)
+{
+    inbox.by_sensors = true;
+    for (uint8_t i = 0; i < 4u; ++i) {
+        saddle_frame_t frame;
+        const uint64_t time_us = 2000u * i + (i == 3u ? 1500u : 0u);
+        saddle_wire_encode_time(2000u * i, i, &frame);
+        saddle_inbox_take_frame(&inbox, frame.id, frame.data, sizeof frame.data, time_us);
+        sense_set(i, ALL, time_us);
+    }
+    TEST_ASSERT_TRUE(inbox.sender_clock);
+    TEST_ASSERT_UINT32_WITHIN(5, 2000, saddle_inbox_sense(&inbox, 8000)->imu_age_us);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -215,5 +309,10 @@ int main(void)
     RUN_TEST(test_of_a_set_whose_time_never_came_nothing_is_taken);
     RUN_TEST(test_our_own_clock_set_back_takes_what_comes);
     RUN_TEST(test_in_lockstep_every_age_is_0);
+    RUN_TEST(test_sensors_are_read_with_the_age_of_their_older_frame);
+    RUN_TEST(test_sensors_that_never_came_are_never_old);
+    RUN_TEST(test_only_the_chosen_kind_of_measurement_is_used);
+    RUN_TEST(test_by_sensors_a_tick_has_the_measurement_as_it_is);
+    RUN_TEST(test_sensors_age_from_when_they_were_sampled);
     return UNITY_END();
 }

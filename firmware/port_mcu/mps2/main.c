@@ -30,7 +30,7 @@ static uint32_t *stack_lowest(void)
 static void run(void)
 {
     mps2_can_start();
-    mps2_clock_start();
+    mps2_clock_start(saddle_joint_loop_period_us(&controller.joints.config));
     if (!controller.lockstep) { /* the time of the next tick is unknown there */
         mps2_watchdog_start();
     }
@@ -49,20 +49,33 @@ static void report(void)
            saddle_can_lost(), controller.not_sent, used, (uint32_t)(uintptr_t)__stack_size);
 }
 
+/** False: what is wrong with the settings was printed. */
+static bool start(const saddle_settings_t *settings)
+{
+    const char *bad_field = saddle_config_check(&settings->config);
+    bad_field = bad_field != NULL ? bad_field : saddle_joint_loop_check(&settings->joints);
+    saddle_status_t status =
+        saddle_controller_init(&controller, &settings->config, settings->lockstep);
+    if (status == SADDLE_OK) {
+        status = saddle_controller_drive_joints(&controller, &settings->joints);
+    }
+    if (status != SADDLE_OK || bad_field != NULL) {
+        printf("saddle_init: status %d, %s\n", (int)status,
+               bad_field != NULL ? bad_field : "see saddle_status_t");
+        return false;
+    }
+    return true;
+}
+
 int main(void)
 {
-    saddle_config_t config;
-    bool lockstep;
+    static saddle_settings_t settings;
     saddle_stack_paint(stack_lowest());
-    if (!saddle_settings_read(SETTINGS, &config, &lockstep)) {
+    if (!saddle_settings_read(SETTINGS, &settings)) {
         printf("settings: the page is damaged, was never written, or holds other fields\n");
         return 1;
     }
-    const saddle_status_t status = saddle_controller_init(&controller, &config, lockstep);
-    if (status != SADDLE_OK) {
-        const char *bad_field = saddle_config_check(&config);
-        printf("saddle_init: status %d, %s\n", (int)status,
-               bad_field != NULL ? bad_field : "see saddle_status_t");
+    if (!start(&settings)) {
         return 1;
     }
     run();

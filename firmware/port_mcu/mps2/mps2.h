@@ -22,8 +22,8 @@ void mps2_interrupts_restore(uint32_t held);
 void mps2_sleep(void);
 void mps2_wake(void);
 
-/** Start the 80 ms timer. */
-void mps2_clock_start(void);
+/** Start the timer, with the period of saddle_clock_rounds(). */
+void mps2_clock_start(uint32_t timer_period_us);
 
 /** Start the watchdog: after two and a half ticks without being fed it warns, for which the controller
  *  hangs, and after five it resets. */

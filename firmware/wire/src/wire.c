@@ -1,12 +1,6 @@
-#include <saddlewalk/wire.h>
+#include "frame.h"
 
-#include "wire_signals.h"
-#include <float.h>
-#include <math.h>
-
-#define NOT_AVAILABLE INT16_MIN
 #define COUNTER_MASK 0x0Fu
-#define COUNTER_BITS 4u
 #define ROUND_SHIFT 5u /* in byte 1 */
 #define COUNTER_STEP_MAX 4u
 #define AGE_MAX_MS 4095u
@@ -16,75 +10,6 @@
 
 /** Without commands there is a new session every so many ticks, 2 s, so that a delayed code expires. */
 #define IDLE_SESSION_TICKS 25u
-
-/** A frame's bytes 0 to 7 are one number of 64 bits, byte 0 the lowest. These are a signal's part of
- *  it: of a number of 16 or 8 bits, or of a count or code, whose higher bits are dropped. */
-#define NUMBER(signal, valid, value)                                           \
-    ((uint64_t)raw_of((valid), (value), 0.5f * SIGNALS[SIGNAL_##signal].scale) \
-     << SIGNALS[SIGNAL_##signal].start)
-#define SHORT_NUMBER(signal, value)                                         \
-    ((uint64_t)short_raw_of((value), 0.5f * SIGNALS[SIGNAL_##signal].scale) \
-     << SIGNALS[SIGNAL_##signal].start)
-#define CODE(signal, value) \
-    ((uint64_t)((value) & mask_of(SIGNAL_##signal)) << SIGNALS[SIGNAL_##signal].start)
-
-/** And back. */
-#define NUMBER_IN(signal, bits) number_of(&SIGNALS[SIGNAL_##signal], (bits))
-#define SHORT_NUMBER_IN(signal, bits) short_number_of(&SIGNALS[SIGNAL_##signal], (bits))
-#define CODE_IN(signal, bits) \
-    ((uint32_t)((bits) >> SIGNALS[SIGNAL_##signal].start) & mask_of(SIGNAL_##signal))
-
-/** Half steps at the end of a number's range. */
-#define HALVES_MAX (2.0f * INT16_MAX)
-
-static bool is_finite(float value)
-{
-    return value >= -FLT_MAX && value <= FLT_MAX;
-}
-
-/** All bits of a count or code. */
-static uint32_t mask_of(size_t signal)
-{
-    return UINT32_MAX >> (32u - SIGNALS[signal].length);
-}
-
-/** The nearest whole number of steps, ties away from 0, in 16 bits. Neither NaN nor what is beyond
- *  the range becomes an integer. Inlined at each of its calls it would double the wire. */
-static SADDLE_NOINLINE uint32_t raw_of(bool valid, float value, float half_step)
-{
-    const float halves = value / half_step;
-    if (valid && __builtin_fabsf(halves) <= HALVES_MAX) {
-        const uint32_t whole = (uint32_t)(int32_t)halves;
-        const uint32_t negative = whole >> 31; /* whose half alone is away from 0 */
-        return (whole + 1u - negative) / 2u & UINT16_MAX;
-    }
-    if (!valid || !is_finite(value)) {
-        return (uint16_t)NOT_AVAILABLE;
-    }
-    return (uint16_t)(value < 0.0f ? -INT16_MAX : INT16_MAX);
-}
-
-/** In 8 bits. */
-static uint8_t short_raw_of(float value, float half_step)
-{
-    const int16_t raw = (int16_t)(uint16_t)raw_of(true, value, half_step);
-    if (raw == NOT_AVAILABLE) {
-        return (uint8_t)INT8_MIN;
-    }
-    return (uint8_t)(raw > INT8_MAX ? INT8_MAX : raw < -INT8_MAX ? -INT8_MAX : raw);
-}
-
-static float short_number_of(const signal_t *signal, uint64_t bits)
-{
-    const int8_t raw = (int8_t)(uint8_t)(bits >> signal->start);
-    return raw == INT8_MIN ? NAN : (float)raw * signal->scale;
-}
-
-static float number_of(const signal_t *signal, uint64_t bits)
-{
-    const int16_t raw = (int16_t)(uint16_t)(bits >> signal->start);
-    return raw == NOT_AVAILABLE ? NAN : (float)raw * signal->scale;
-}
 
 static uint32_t limited(uint32_t value, uint32_t largest)
 {
@@ -101,67 +26,6 @@ static uint32_t age_ms(uint32_t us)
 {
     return limited(us / 1000u, AGE_MAX_MS);
 }
-
-static uint32_t crc_after(uint32_t crc, uint32_t byte)
-{
-    return CRC_OF_BYTE[crc ^ (byte & 0xFFu)];
-}
-
-uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length)
-{
-    uint32_t crc = 0xFFu;
-    for (size_t i = 0; i < length; ++i) {
-        crc = crc_after(crc, bytes[i]);
-    }
-    return (uint8_t)(crc ^ 0xFFu);
-}
-
-static uint32_t crc_of_id(uint32_t id)
-{
-    return crc_after(crc_after(0xFFu, id), id >> 8);
-}
-
-/** CRC of a frame: of its identifier, then of the seven bytes above byte 0. */
-static uint32_t frame_crc(uint32_t id_crc, uint64_t bits)
-{
-    const uint32_t low = (uint32_t)bits, high = (uint32_t)(bits >> 32);
-    uint32_t crc = crc_after(crc_after(crc_after(id_crc, low >> 8), low >> 16), low >> 24);
-    crc = crc_after(crc_after(crc, high), high >> 8);
-    return crc_after(crc_after(crc, high >> 16), high >> 24) ^ 0xFFu;
-}
-
-static uint32_t word_at(const uint8_t *bytes)
-{
-    return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
-           (uint32_t)bytes[3] << 24;
-}
-
-static uint64_t bits_of(const uint8_t *data)
-{
-    return (uint64_t)word_at(data + 4) << 32 | word_at(data);
-}
-
-static void put_word(uint8_t *bytes, uint32_t word)
-{
-    bytes[0] = (uint8_t)word;
-    bytes[1] = (uint8_t)(word >> 8);
-    bytes[2] = (uint8_t)(word >> 16);
-    bytes[3] = (uint8_t)(word >> 24);
-}
-
-/** The bits of a frame, which have no CRC yet, as its bytes. */
-static void seal(uint8_t *data, uint32_t id_crc, uint64_t bits)
-{
-    put_word(data, (uint32_t)bits | frame_crc(id_crc, bits));
-    put_word(data + 4, (uint32_t)(bits >> 32));
-}
-
-#define ENCODE(frame, message, counter, signals)              \
-    do {                                                      \
-        (frame)->id = MESSAGE_##message;                      \
-        seal((frame)->data, crc_of_id(MESSAGE_##message),     \
-             CODE(message##_COUNTER, (counter)) | (signals)); \
-    } while (0)
 
 uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH])
 {
@@ -204,6 +68,13 @@ static saddle_wire_message_t message_of(uint32_t id)
     case MESSAGE_MEASURED_COM: return SADDLE_WIRE_MEASURED_COM;
     case MESSAGE_MEASURED_LEFT: return SADDLE_WIRE_MEASURED_LEFT;
     case MESSAGE_MEASURED_RIGHT: return SADDLE_WIRE_MEASURED_RIGHT;
+    case MESSAGE_SENSED_GYRO: return SADDLE_WIRE_SENSED_GYRO;
+    case MESSAGE_SENSED_ACCELEROMETER: return SADDLE_WIRE_SENSED_ACCELEROMETER;
+    case MESSAGE_SENSED_LOADS: return SADDLE_WIRE_SENSED_LOADS;
+    case MESSAGE_SENSED_LEFT_HIP: return SADDLE_WIRE_SENSED_LEFT_HIP;
+    case MESSAGE_SENSED_LEFT_LEG: return SADDLE_WIRE_SENSED_LEFT_LEG;
+    case MESSAGE_SENSED_RIGHT_HIP: return SADDLE_WIRE_SENSED_RIGHT_HIP;
+    case MESSAGE_SENSED_RIGHT_LEG: return SADDLE_WIRE_SENSED_RIGHT_LEG;
     default: return SADDLE_WIRE_NONE;
     }
 }
@@ -244,7 +115,7 @@ static bool is_authentic(saddle_wire_guard_t *guard, const uint8_t *command)
         return !guard->required;
     }
     guard->waits = false;
-    const uint64_t code = bits_of(guard->frame);
+    const uint64_t code = saddle_frame_bits(guard->frame);
     const uint16_t freshness = (uint16_t)CODE_IN(COMMAND_CODE_FRESHNESS, code);
     if (!guard->opened || freshness <= guard->freshness ||
         CODE_IN(COMMAND_CODE_CODE, code) !=
@@ -271,7 +142,7 @@ static bool is_authentic_time(saddle_wire_guard_t *guard, const uint8_t *data)
         return !guard->required;
     }
     const uint32_t time_us = saddle_wire_decode_time(data);
-    const uint32_t code = CODE_IN(MEASURED_TIME_CODE, bits_of(data));
+    const uint32_t code = CODE_IN(MEASURED_TIME_CODE, saddle_frame_bits(data));
     const bool later = (int32_t)(time_us - guard->time_us) > 0;
     if (code == code_of_time(&guard->key, guard->session, data)) {
         if (guard->timed && !later) {
@@ -298,9 +169,9 @@ static void keep_code(saddle_wire_guard_t *guard, const uint8_t *data)
 static uint32_t *count_of(saddle_wire_receiver_t *receiver, saddle_wire_message_t message,
                           uint32_t id, const uint8_t *data)
 {
-    const uint64_t bits = bits_of(data);
+    const uint64_t bits = saddle_frame_bits(data);
     const bool commands = message == SADDLE_WIRE_COMMAND;
-    if ((bits & 0xFFu) != frame_crc(crc_of_id(id), bits)) {
+    if ((bits & 0xFFu) != saddle_frame_crc(crc_of_id(id), bits)) {
         return &receiver->bad_crc;
     }
     if (commands && !speaks_our_version(receiver, bits)) {
@@ -337,7 +208,7 @@ saddle_wire_message_t saddle_wire_accept(saddle_wire_receiver_t *receiver, uint3
 
 void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_command_t *command)
 {
-    const uint64_t bits = bits_of(data);
+    const uint64_t bits = saddle_frame_bits(data);
     command->mode = (uint8_t)CODE_IN(COMMAND_MODE, bits);
     command->speed_m_s = NUMBER_IN(COMMAND_SPEED, bits);
     command->heel_strike_rad = NUMBER_IN(COMMAND_HEEL_STRIKE, bits);
@@ -346,7 +217,7 @@ void saddle_wire_decode_command(const uint8_t data[SADDLE_WIRE_LENGTH], saddle_c
 
 uint32_t saddle_wire_decode_time(const uint8_t data[SADDLE_WIRE_LENGTH])
 {
-    return CODE_IN(MEASURED_TIME_TIME, bits_of(data));
+    return CODE_IN(MEASURED_TIME_TIME, saddle_frame_bits(data));
 }
 
 static void decode_com(uint64_t bits, saddle_measurement_t *measurement)
@@ -375,11 +246,11 @@ void saddle_wire_decode_measured(saddle_wire_message_t message,
                                  saddle_measurement_t *measurement)
 {
     if (message == SADDLE_WIRE_MEASURED_COM) {
-        decode_com(bits_of(data), measurement);
+        decode_com(saddle_frame_bits(data), measurement);
     } else if (message == SADDLE_WIRE_MEASURED_LEFT) {
-        decode_left(bits_of(data), measurement);
+        decode_left(saddle_frame_bits(data), measurement);
     } else if (message == SADDLE_WIRE_MEASURED_RIGHT) {
-        decode_right(bits_of(data), measurement);
+        decode_right(saddle_frame_bits(data), measurement);
     }
 }
 
@@ -586,6 +457,7 @@ static void encode_process(const saddle_wire_health_t *health, uint8_t counter,
     ENCODE(&frames[2], INPUTS, counter,
            CODE(INPUTS_COMMAND_SOURCE, health->command_source) |
                CODE(INPUTS_SENDER_CLOCK, health->sender_clock) |
+               CODE(INPUTS_MEASURED_BY, health->by_sensors) |
                CODE(INPUTS_COMMAND_AGE, age_ms(age_us[SADDLE_WIRE_COMMAND])) |
                CODE(INPUTS_COM_AGE, age_ms(age_us[SADDLE_WIRE_MEASURED_COM])) |
                CODE(INPUTS_LEFT_AGE, age_ms(age_us[SADDLE_WIRE_MEASURED_LEFT])) |
@@ -635,22 +507,21 @@ void saddle_wire_encode_command(const saddle_command_t *command, uint8_t counter
 void saddle_wire_encode_time(uint32_t sampled_us, uint8_t number, saddle_frame_t *frame)
 {
     ENCODE(frame, MEASURED_TIME, number,
-           CODE(MEASURED_TIME_ROUND, (uint32_t)number >> COUNTER_BITS) |
-               CODE(MEASURED_TIME_TIME, sampled_us));
+           CODE(MEASURED_TIME_ROUND, round_of(number)) | CODE(MEASURED_TIME_TIME, sampled_us));
 }
 
 void saddle_wire_authenticate_time(const saddle_cmac_key_t *key, uint32_t session,
                                    saddle_frame_t *frame)
 {
-    const uint64_t bits = bits_of(frame->data) & UINT64_C(0x0000FFFFFFFFFF00);
-    seal(frame->data, crc_of_id(MESSAGE_MEASURED_TIME),
-         bits | CODE(MEASURED_TIME_CODE, code_of_time(key, session, frame->data)));
+    const uint64_t bits = saddle_frame_bits(frame->data) & UINT64_C(0x0000FFFFFFFFFF00);
+    saddle_frame_seal(frame->data, crc_of_id(MESSAGE_MEASURED_TIME),
+                      bits | CODE(MEASURED_TIME_CODE, code_of_time(key, session, frame->data)));
 }
 
 void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uint8_t number,
                                     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES])
 {
-    const uint32_t round = (uint32_t)number >> COUNTER_BITS;
+    const uint32_t round = round_of(number);
     const saddle_vec2_t left_m = measurement->foot[SADDLE_LEFT].cop_m;
     const saddle_vec2_t right_m = measurement->foot[SADDLE_RIGHT].cop_m;
     ENCODE(&frames[0], MEASURED_COM, number,

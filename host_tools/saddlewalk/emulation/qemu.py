@@ -36,8 +36,12 @@ class Controller:
 
 
 @contextlib.contextmanager
-def running_controller(config: Any, clock: str = "lockstep") -> Iterator[Controller]:
+def running_controller(
+    config: Any, clock: str = "lockstep", joints_hz: int = 0
+) -> Iterator[Controller]:
     """Starts it with a configuration; when the block ends, its bus is closed, which ends it.
+
+    joints_hz: as of saddlewalk-host --joints; 0: it is measured by CoM and feet.
 
     Raises UserError if something is missing, or with its last line if it failed, whatever
     exception that caused in the block.
@@ -47,7 +51,7 @@ def running_controller(config: Any, clock: str = "lockstep") -> Iterator[Control
     ours, theirs = socket.socketpair()
     with tempfile.TemporaryDirectory() as folder, theirs:
         page = Path(folder) / "settings"
-        page.write_bytes(settings_page(config, clock))
+        page.write_bytes(settings_page(config, clock, joints_hz))
         process = subprocess.Popen(
             _command(page, theirs.fileno()),
             pass_fds=[theirs.fileno()],
@@ -68,13 +72,17 @@ def running_controller(config: Any, clock: str = "lockstep") -> Iterator[Control
                 raise UserError(f"{DESCRIPTION}: {words}")
 
 
-def settings_page(config: Any, clock: str) -> bytes:
+def settings_page(config: Any, clock: str, joints_hz: int = 0) -> bytes:
     """The page of flash with a saddle_config_t, as firmware/port_mcu/settings.h lays it down."""
+    from saddlewalk.contract import TICK_S
     from saddlewalk.core import field_ranges
+    from saddlewalk.joints import loop_settings
 
-    fields = {name: getattr(config, name) for name in field_ranges()}
-    names = b"".join(name.encode() + b"\0" for name in fields)
-    values = struct.pack(f"<2I{len(fields)}f", clock == "lockstep", config.ankle, *fields.values())
+    fields = [(name, getattr(config, name)) for name in field_ranges()]
+    fields += [(name, value) for _, name, value in loop_settings(config)]
+    names = b"".join(name.encode() + b"\0" for name, _ in fields)
+    head = (clock == "lockstep", config.ankle, round(joints_hz * TICK_S))
+    values = struct.pack(f"<3I{len(fields)}f", *head, *(value for _, value in fields))
     return struct.pack("<I", zlib.crc32(names + values)) + values
 
 

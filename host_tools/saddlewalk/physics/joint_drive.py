@@ -94,6 +94,17 @@ class Device:
             sensors.load_n[side] = max(load_n, 0.0)
 
 
+def drive_torques(plant: Plant, command: np.ndarray) -> np.ndarray:
+    """What each joint's drive makes of its command, by its own encoder.
+
+    command: (7, 12), the fields of saddle_joint_command_t.
+    """
+    angle, rate, torque, stiffness, damping, low, high = command
+    data = plant.data
+    wanted = torque + stiffness * (angle - data.qpos[7:]) + damping * (rate - data.qvel[6:])
+    return np.asarray(np.clip(wanted, low, high))
+
+
 class JointWearer(PhysicalWearer):
     """With the interface of PhysicalWearer; its measurements are the estimator's."""
 
@@ -158,7 +169,7 @@ class JointWearer(PhysicalWearer):
         self._since_tick_s += STEP_S
         self._queue.append(self._commands(self._plan))
         self._note_reference()
-        self.plant.step(self._drive(self._queue[0]), self._push())
+        self.plant.step(drive_torques(self.plant, self._queue[0]), self._push())
         self._sense()
         self._read()
         for side, foot in enumerate(self.feet):
@@ -174,10 +185,3 @@ class JointWearer(PhysicalWearer):
         self.xcom_error_m = self.xcom_m - planned_m
         if self._plan is not None:
             self._origin_m = planned_m - self._plan.reference(self._plan_age_s).xcom_m
-
-    def _drive(self, command: np.ndarray) -> np.ndarray:
-        """What each joint's drive makes of its command, by its own encoder."""
-        angle, rate, torque, stiffness, damping, low, high = command
-        data = self.plant.data
-        wanted = torque + stiffness * (angle - data.qpos[7:]) + damping * (rate - data.qvel[6:])
-        return np.asarray(np.clip(wanted, low, high))

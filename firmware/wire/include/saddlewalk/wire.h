@@ -71,6 +71,13 @@ typedef enum {
     SADDLE_WIRE_MEASURED_RIGHT = 3,
     SADDLE_WIRE_COMMAND_CODE = 4, /**< kept for the COMMAND that follows; nothing to decode */
     SADDLE_WIRE_MEASURED_TIME = 5,
+    SADDLE_WIRE_SENSED_GYRO = 6, /**< from here on raw sensors, see wire_joints.h */
+    SADDLE_WIRE_SENSED_ACCELEROMETER = 7,
+    SADDLE_WIRE_SENSED_LOADS = 8,
+    SADDLE_WIRE_SENSED_LEFT_HIP = 9,
+    SADDLE_WIRE_SENSED_LEFT_LEG = 10,
+    SADDLE_WIRE_SENSED_RIGHT_HIP = 11,
+    SADDLE_WIRE_SENSED_RIGHT_LEG = 12,
     SADDLE_WIRE_MESSAGE_COUNT
 } saddle_wire_message_t;
 
@@ -85,6 +92,7 @@ typedef struct {
     uint8_t command_source;   /**< has authority: 0 none, 1 CAN, 2 LCM */
     bool sender_clock; /**< the measurements' ages count from when they were sampled, not from
                             when they were received */
+    bool by_sensors;   /**< raw sensors are used, and MEASURED_COM, _LEFT and _RIGHT are not */
     uint32_t input_age_us[SADDLE_WIRE_MEASURED_RIGHT + 1];           /**< by message */
     uint32_t accepted, malformed, bad_crc, bad_version, bad_counter; /**< the receiver's */
 } saddle_wire_health_t;
@@ -132,7 +140,7 @@ uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length);
 /** Alive counter of a frame, 0 to 15. */
 uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH]);
 
-/** Number of a MEASURED_xxx frame's set, 0 to SADDLE_WIRE_SET_MAX. */
+/** Number of a MEASURED_xxx or SENSED_xxx frame's set, 0 to SADDLE_WIRE_SET_MAX. */
 uint8_t saddle_wire_set_number(const uint8_t data[SADDLE_WIRE_LENGTH]);
 
 /**
