@@ -1,4 +1,4 @@
-"""The whole chain: a body's sensors by CAN to the firmware, its joint commands by CAN to the body."""
+"""The whole chain: a body's sensors by CAN to the firmware, its joint commands by CAN back."""
 
 import importlib.util
 import re
