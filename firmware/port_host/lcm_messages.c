@@ -5,8 +5,10 @@
 #include <saddlewalk_bos_t.h>
 #include <saddlewalk_config_t.h>
 #include <saddlewalk_input_t.h>
+#include <saddlewalk_joints_t.h>
 #include <saddlewalk_plan_t.h>
 #include <saddlewalk_scores_t.h>
+#include <saddlewalk_sensors_t.h>
 #include <saddlewalk_turn_t.h>
 #include <saddlewalk_verdict_t.h>
 #include <saddlewalk_way_t.h>
@@ -293,6 +295,48 @@ bool saddle_lcm_decode_input(const uint8_t *bytes, int size, saddle_input_t *inp
                                                    .age_us = (uint32_t)message.right_age_us}}},
     };
     return true;
+}
+
+int saddle_lcm_encode_sensors(const saddle_sensors_t *sensors, const saddle_estimate_t *estimate,
+                              uint8_t bytes[SADDLE_LCM_MESSAGE_MAX])
+{
+    saddlewalk_sensors_t message = {
+        .utime_us = (int64_t)sensors->time_us,
+        .load_n = {sensors->load_n[SADDLE_LEFT], sensors->load_n[SADDLE_RIGHT]},
+        .imu_age_us = age_message(sensors->imu_age_us),
+        .joints_age_us = {age_message(sensors->joints_age_us[SADDLE_LEFT]),
+                          age_message(sensors->joints_age_us[SADDLE_RIGHT])},
+        .load_age_us = {age_message(sensors->load_age_us[SADDLE_LEFT]),
+                        age_message(sensors->load_age_us[SADDLE_RIGHT])},
+        .faults = (int32_t)estimate->faults,
+        .lost_joints = (int32_t)estimate->lost_joints,
+    };
+    set3(message.gyro_rad_s, sensors->gyro_rad_s);
+    set3(message.accelerometer_m_s2, sensors->accelerometer_m_s2);
+    memcpy(message.angle_rad, sensors->angle_rad, sizeof message.angle_rad);
+    return saddlewalk_sensors_t_encode(bytes, 0, SADDLE_LCM_MESSAGE_MAX, &message);
+}
+
+int saddle_lcm_encode_joints(const saddle_joint_commands_t *commands, int64_t utime_us,
+                             uint8_t bytes[SADDLE_LCM_MESSAGE_MAX])
+{
+    saddlewalk_joints_t message = {
+        .utime_us = utime_us,
+        .fallback = commands->fallback,
+        .load_share = {commands->load_share[SADDLE_LEFT], commands->load_share[SADDLE_RIGHT]},
+    };
+    for (size_t i = 0; i < (size_t)2u * SADDLE_LEG_JOINTS; ++i) {
+        const saddle_joint_command_t *command =
+            &commands->joint[i / SADDLE_LEG_JOINTS][i % SADDLE_LEG_JOINTS];
+        message.angle_rad[i] = command->angle_rad;
+        message.rate_rad_s[i] = command->rate_rad_s;
+        message.torque_nm[i] = command->torque_nm;
+        message.stiffness[i] = command->stiffness;
+        message.damping[i] = command->damping;
+        message.torque_min_nm[i] = command->torque_min_nm;
+        message.torque_max_nm[i] = command->torque_max_nm;
+    }
+    return saddlewalk_joints_t_encode(bytes, 0, SADDLE_LCM_MESSAGE_MAX, &message);
 }
 
 int saddle_lcm_encode_config(const saddle_config_t *config, uint64_t time_us, bool lockstep,

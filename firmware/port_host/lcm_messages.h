@@ -6,6 +6,7 @@
 #ifndef SADDLEWALK_HOST_LCM_MESSAGES_H
 #define SADDLEWALK_HOST_LCM_MESSAGES_H
 
+#include <saddlewalk/joint_command.h>
 #include <saddlewalk/saddlewalk.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -45,6 +46,14 @@ int saddle_lcm_encode_turn(const saddle_input_t *input, uint8_t bytes[SADDLE_LCM
 /** Add a turn_t to the decoded input_t of its tick. False, and nothing is written, unless the bytes are
  *  exactly one. */
 bool saddle_lcm_decode_turn(const uint8_t *bytes, int size, saddle_input_t *input);
+
+/** sensors_t. Returns the size in bytes. */
+int saddle_lcm_encode_sensors(const saddle_sensors_t *sensors, const saddle_estimate_t *estimate,
+                              uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
+
+/** joints_t. Returns the size in bytes. */
+int saddle_lcm_encode_joints(const saddle_joint_commands_t *commands, int64_t utime_us,
+                             uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
 
 /** config_t. Returns the size in bytes. */
 int saddle_lcm_encode_config(const saddle_config_t *config, uint64_t time_us, bool lockstep,

@@ -76,6 +76,20 @@ void saddle_lcm_publish(saddle_lcm_port_t *port, const saddle_input_t *input,
     note_sent(port, saddlewalk_health_t_publish(port->lcm, "SADDLEWALK_HEALTH", health) == 0);
 }
 
+void saddle_lcm_publish_joints(saddle_lcm_port_t *port, const saddle_sensors_t *sensors,
+                               const saddle_estimate_t *estimate,
+                               const saddle_joint_commands_t *commands)
+{
+    if (port->lcm == NULL) {
+        return;
+    }
+    uint8_t bytes[SADDLE_LCM_MESSAGE_MAX];
+    int size = saddle_lcm_encode_sensors(sensors, estimate, bytes);
+    publish(port, "SADDLEWALK_SENSORS", bytes, size);
+    size = saddle_lcm_encode_joints(commands, (int64_t)sensors->time_us, bytes);
+    publish(port, "SADDLEWALK_JOINTS", bytes, size);
+}
+
 void saddle_lcm_publish_config(saddle_lcm_port_t *port, const saddle_config_t *config,
                                uint64_t time_us, bool lockstep)
 {

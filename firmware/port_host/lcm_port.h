@@ -4,6 +4,7 @@
 
 #include "link.h"
 #include <lcm/lcm.h>
+#include <saddlewalk/joint_command.h>
 #include <saddlewalk/saddlewalk.h>
 #include <saddlewalk_health_t.h>
 #include <saddlewalk_status_t.h>
@@ -25,6 +26,11 @@ bool saddle_lcm_open(saddle_lcm_port_t *port, const char *url);
 void saddle_lcm_publish(saddle_lcm_port_t *port, const saddle_input_t *input,
                         const saddle_output_t *output, const saddlewalk_status_t *status,
                         const saddlewalk_health_t *health);
+
+/** SADDLEWALK_SENSORS and _JOINTS, with the time of the sensors. */
+void saddle_lcm_publish_joints(saddle_lcm_port_t *port, const saddle_sensors_t *sensors,
+                               const saddle_estimate_t *estimate,
+                               const saddle_joint_commands_t *commands);
 
 /** SADDLEWALK_CONFIG. */
 void saddle_lcm_publish_config(saddle_lcm_port_t *port, const saddle_config_t *config,

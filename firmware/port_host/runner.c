@@ -234,13 +234,18 @@ static void sense(saddle_runner_t *runner, uint64_t time_us)
     }
 }
 
-static void drive(saddle_runner_t *runner, uint64_t time_us)
+/** What every pass does by CAN is published by LCM once a tick. */
+static void drive(saddle_runner_t *runner, uint64_t time_us, bool ticked)
 {
-    if (runner->inbox.by_sensors) {
-        saddle_joint_loop_drive(&runner->joints, &runner->context, time_us);
-        send_joints(runner);
+    if (!runner->inbox.by_sensors) {
+        return;
     }
-    ++runner->passes;
+    saddle_joint_loop_drive(&runner->joints, &runner->context, time_us);
+    send_joints(runner);
+    if (ticked) {
+        saddle_lcm_publish_joints(runner->lcm, &runner->inbox.sensors, &runner->joints.estimate,
+                                  &runner->joints.commands);
+    }
 }
 
 /** Wait for input, or until a time; 0: without a limit. False: the loop must end. */
@@ -295,10 +300,12 @@ static void run_realtime(saddle_runner_t *runner)
         }
         due_us = newest_place_us(due_us, awake_us, period_us(runner));
         sense(runner, due_us);
-        if (due_us >= tick_us) {
+        const bool ticks = due_us >= tick_us;
+        if (ticks) {
             tick_us = tick_in_time(runner, tick_us, awake_us);
         }
-        drive(runner, due_us);
+        drive(runner, due_us, ticks);
+        ++runner->passes;
         due_us += period_us(runner);
     }
 }
@@ -316,12 +323,14 @@ static void run_lockstep(saddle_runner_t *runner)
         if (is_lockstep_due(runner)) {
             const uint64_t due_us = lockstep_us(runner);
             sense(runner, due_us);
-            if (due_us % SADDLE_TICK_US == 0u) {
+            const bool ticks = due_us % SADDLE_TICK_US == 0u;
+            if (ticks) {
                 saddle_timing_begin(&runner->timing, due_us, due_us);
                 tick(runner, due_us);
                 saddle_timing_end(&runner->timing, due_us, due_us);
             }
-            drive(runner, due_us);
+            drive(runner, due_us, ticks);
+            ++runner->passes;
         } else {
             saddle_bus_maintain(runner->bus);
         }

@@ -1,6 +1,6 @@
 /** What every port shares and the loop of a controller, on a board that does anything: any frames,
- *  lost or sent or not, any clock. The core is not run here (core.c does that): its calls give any
- *  result. Read by Eva (`make prove`). */
+ *  lost or sent or not, any clock. Core and joints are not run here (core.c does that for the core):
+ *  their calls give any result. Read by Eva (`make prove`). */
 #include "any.h"
 
 #include <board.h>
@@ -12,7 +12,11 @@ static volatile saddle_can_frame_t any_frame;
 static volatile saddle_config_t any_config;
 static volatile saddle_command_t any_command;
 static volatile saddle_output_t any_output;
-static volatile uint32_t any_page[128];
+static volatile saddle_joint_loop_config_t any_joints;
+static volatile saddle_plan_t any_plan;
+static volatile saddle_estimate_t any_estimate;
+static volatile saddle_intent_t any_intent;
+static volatile saddle_joint_commands_t any_commands;
 
 bool saddle_can_receive(saddle_can_frame_t *frame)
 {
@@ -82,15 +86,78 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     return any_bool() ? SADDLE_OK : SADDLE_ERROR_TIME;
 }
 
-/** A page of flash with anything in it, and a CRC that fits by chance. */
-static void read_settings(saddle_config_t *config)
+saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
+                               saddle_plan_t *plan)
 {
-    uint32_t page[128];
-    bool lockstep = false;
-    for (size_t i = 0; i < 128u; ++i) {
+    (void)context;
+    (void)time_us;
+    *plan = any_plan;
+    plan->valid = any_bool();
+    return any_bool() ? SADDLE_OK : SADDLE_ERROR_TIME;
+}
+
+saddle_status_t saddle_estimator_init(saddle_estimator_t *estimator, const saddle_legs_t *legs,
+                                      const saddle_estimator_config_t *config)
+{
+    (void)estimator;
+    (void)legs;
+    (void)config;
+    return any_bool() ? SADDLE_OK : SADDLE_ERROR_CONFIG;
+}
+
+saddle_status_t saddle_estimator_update(saddle_estimator_t *estimator,
+                                        const saddle_sensors_t *sensors,
+                                        saddle_estimate_t *estimate)
+{
+    (void)estimator;
+    (void)sensors;
+    *estimate = any_estimate;
+    estimate->measurement.foot[SADDLE_LEFT].contact = any_bool();
+    estimate->measurement.foot[SADDLE_RIGHT].contact = any_bool();
+    return any_bool() ? SADDLE_OK : SADDLE_ERROR_UNINITIALISED;
+}
+
+saddle_status_t saddle_joint_walk_init(saddle_joint_walk_t *walk, const saddle_legs_t *legs,
+                                       const saddle_joint_walk_config_t *config)
+{
+    (void)walk;
+    (void)legs;
+    (void)config;
+    return any_bool() ? SADDLE_OK : SADDLE_ERROR_CONFIG;
+}
+
+saddle_status_t saddle_joint_walk_update(saddle_joint_walk_t *walk,
+                                         const saddle_joint_walk_input_t *input,
+                                         const saddle_estimate_t *estimate, saddle_intent_t *intent)
+{
+    (void)walk;
+    (void)input;
+    (void)estimate;
+    *intent = any_intent;
+    return any_bool() ? SADDLE_OK : SADDLE_ERROR_UNINITIALISED;
+}
+
+void saddle_joint_commands(const saddle_legs_t *legs, const saddle_drive_config_t *config,
+                           const saddle_estimate_t *estimate, const saddle_intent_t *intent,
+                           saddle_joint_commands_t *commands)
+{
+    (void)legs;
+    (void)config;
+    (void)estimate;
+    (void)intent;
+    *commands = any_commands;
+    commands->fallback = any_bool();
+}
+
+/** A page of flash with anything in it, and a CRC that fits by chance. */
+static void read_settings(saddle_settings_t *settings)
+{
+    static uint32_t page[256];
+    for (size_t i = 0; i < 256u; ++i) {
         page[i] = any_uint32;
     }
-    (void)saddle_settings_read(page, config, &lockstep);
+    (void)saddle_settings_read(page, settings);
+    saddle_settings_write(page, settings);
 }
 
 static void read_serial_line(void)
@@ -125,13 +192,18 @@ static void host(void)
 int main(void)
 {
     static saddle_controller_t controller;
-    saddle_config_t config = any_config;
-    read_settings(&config);
+    static saddle_settings_t settings;
+    settings.config = any_config;
+    settings.joints = any_joints;
+    read_settings(&settings);
     uint8_t key[SADDLE_CMAC_LENGTH];
     for (size_t i = 0; i < SADDLE_CMAC_LENGTH; ++i) {
         key[i] = any_uint8;
     }
-    (void)saddle_controller_init(&controller, &config, any_bool());
+    (void)saddle_controller_init(&controller, &settings.config, any_bool());
+    if (any_bool() && saddle_joint_loop_check(&settings.joints) == NULL) {
+        (void)saddle_controller_drive_joints(&controller, &settings.joints);
+    }
     if (any_bool()) {
         saddle_controller_require_codes(&controller, key);
     }

@@ -1,12 +1,15 @@
 /** The wire, with whatever comes: any frames, any results, any keys. Read by Eva (`make prove`). */
 #include "any.h"
 
-#include <saddlewalk/wire.h>
+#include <saddlewalk/wire_joints.h>
 
 static volatile saddle_output_t any_output;
 static volatile saddle_wire_health_t any_health;
 static volatile saddle_command_t any_command;
 static volatile saddle_measurement_t any_measurement;
+static volatile saddle_sensors_t any_sensors;
+static volatile saddle_joint_commands_t any_commands;
+static volatile saddle_estimate_t any_estimate;
 
 /** The flags, of which C knows two values only. */
 static saddle_output_t some_output(void)
@@ -32,7 +35,8 @@ static saddle_measurement_t some_measurement(void)
     return measurement;
 }
 
-static void receive(saddle_wire_receiver_t *receiver, saddle_measurement_t *measurement)
+static void receive(saddle_wire_receiver_t *receiver, saddle_measurement_t *measurement,
+                    saddle_sensors_t *sensors)
 {
     saddle_command_t command;
     uint8_t data[SADDLE_WIRE_LENGTH];
@@ -48,6 +52,7 @@ static void receive(saddle_wire_receiver_t *receiver, saddle_measurement_t *meas
         (void)saddle_wire_set_number(data);
     } else if (message != SADDLE_WIRE_NONE) {
         saddle_wire_decode_measured(message, data, measurement);
+        saddle_wire_decode_sensors(message, data, sensors);
     }
 }
 
@@ -58,6 +63,7 @@ static void send(const saddle_wire_receiver_t *receiver, const saddle_cmac_key_t
     const saddle_output_t output = some_output();
     saddle_wire_health_t health = any_health;
     health.sender_clock = any_bool();
+    health.by_sensors = any_bool();
     const saddle_command_t command = any_command;
     const saddle_measurement_t measurement = some_measurement();
     saddle_wire_encode_output(&output, &health, any_uint8, frames);
@@ -70,10 +76,22 @@ static void send(const saddle_wire_receiver_t *receiver, const saddle_cmac_key_t
     (void)saddle_wire_session_expired(receiver, &output, any_uint32);
 }
 
+static void send_joints(void)
+{
+    saddle_frame_t frames[SADDLE_WIRE_JOINT_FRAMES];
+    const saddle_sensors_t sensors = any_sensors;
+    const saddle_estimate_t estimate = any_estimate;
+    saddle_joint_commands_t commands = any_commands;
+    commands.fallback = any_bool();
+    saddle_wire_encode_sensors(&sensors, any_uint8, frames);
+    saddle_wire_encode_joints(&commands, &estimate, any_uint8, frames);
+}
+
 int main(void)
 {
     static saddle_wire_receiver_t receiver;
     saddle_measurement_t measurement = some_measurement();
+    saddle_sensors_t sensors = any_sensors;
     uint8_t secret[SADDLE_CMAC_LENGTH];
     saddle_cmac_key_t key;
     for (size_t i = 0; i < sizeof secret; ++i) {
@@ -88,8 +106,9 @@ int main(void)
         if (any_bool()) {
             saddle_wire_open_session(&receiver, any_uint32);
         }
-        receive(&receiver, &measurement);
+        receive(&receiver, &measurement, &sensors);
         send(&receiver, &key);
+        send_joints();
     }
     return 0;
 }

@@ -443,7 +443,7 @@ SENSED = {
 for _side in ("LEFT", "RIGHT"):
     SENSED[f"SENSED_{_side}_HIP"] = {"YAW": 0.0, "ROLL": 0.0, "PITCH": -0.3}
     SENSED[f"SENSED_{_side}_LEG"] = {"KNEE": 0.6, "ANKLE_PITCH": -0.3, "ANKLE_ROLL": 0.0}
-JOINTS_STATE_ID = 0xB0
+JOINTS = "HIP_YAW HIP_ROLL HIP_PITCH KNEE ANKLE_PITCH ANKLE_ROLL".split()
 
 
 def joint_pass(host: Host) -> dict[str, dict[str, float]]:
@@ -488,7 +488,8 @@ def test_in_real_time_lost_sensors_give_the_configured_behaviour_in_the_stated_t
             for name, values in SENSED.items():
                 host.send(name, **values)
             state = joint_pass(host)
-            sound = 0 if state["JOINTS_STATE"]["FALLBACK"] else sound + 1
+            found = state["JOINTS_STATE"]
+            sound = 0 if found["FALLBACK"] or found["FAULTS"] else sound + 1
             assert time.monotonic() - begin_s < 2 * WAIT_S
         lost_s = time.monotonic()
         while state["JOINTS_STATE"]["FALLBACK"] == 0 and time.monotonic() - lost_s < WAIT_S:
@@ -536,3 +537,41 @@ def test_joint_options_that_are_wrong_are_named(option, words):
     assert done.returncode == 2
     assert done.stderr.startswith(f"saddlewalk-host: {words}")
     assert done.stderr.count("\n") == 1
+
+
+def test_sensors_and_joint_commands_are_on_lcm_with_each_tick():
+    from saddlewalk.transport.lcm_types import joints_t, sensors_t
+
+    url = own_lcm()
+    with Host(f"--lcm={url}", "--clock=lockstep", "--joints=125") as host:
+        lcm, latest = open_lcm(url), {}
+        lcm.subscribe(
+            "SADDLEWALK_(SENSORS|JOINTS)", lambda channel, data: latest.update({channel: data})
+        )
+        for number in range(61):
+            host.send("MEASURED_TIME", TIME=8000 * number, CODE=0)
+            for name, values in SENSED.items():
+                host.send(name, **values)
+            messages = joint_pass(host)
+        while lcm.handle_timeout(200):
+            pass
+        sensors = sensors_t.decode(latest["SADDLEWALK_SENSORS"])
+        commands = joints_t.decode(latest["SADDLEWALK_JOINTS"])
+    assert sensors.utime_us == commands.utime_us == 480_000
+    assert sensors.accelerometer_m_s2 == pytest.approx((0, 0, 9.81), abs=0.003)
+    assert sensors.angle_rad == pytest.approx(2 * (0, 0, -0.3, 0.6, -0.3, 0), abs=1e-4)
+    assert sensors.load_n == pytest.approx((310, 310), abs=0.1)
+    assert (sensors.imu_age_us, sensors.joints_age_us, sensors.load_age_us) == (0, (0, 0), (0, 0))
+    assert sensors.faults == sensors.lost_joints == commands.fallback == 0
+    # As on CAN, to its resolution.
+    for place, joint in enumerate(
+        f"{side}_{name}" for side in ("LEFT", "RIGHT") for name in JOINTS
+    ):
+        reference, gains = messages[f"JOINT_{joint}"], messages[f"GAINS_{joint}"]
+        assert commands.angle_rad[place] == pytest.approx(reference["ANGLE"], abs=0.00006)
+        assert commands.rate_rad_s[place] == pytest.approx(reference["RATE"], abs=0.0006)
+        assert commands.torque_nm[place] == pytest.approx(reference["TORQUE"], abs=0.011)
+        assert commands.stiffness[place] == pytest.approx(gains["STIFFNESS"], abs=0.26)
+        assert commands.damping[place] == pytest.approx(gains["DAMPING"], abs=0.026)
+        assert commands.torque_min_nm[place] == pytest.approx(gains["TORQUE_MIN"], abs=1.01)
+        assert commands.torque_max_nm[place] == pytest.approx(gains["TORQUE_MAX"], abs=1.01)
