@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main
-from saddlewalk.emulation import qemu
 
 pytestmark = [
     pytest.mark.firmware,
@@ -35,7 +34,7 @@ def test_a_fall_is_told(monkeypatch, capsys):
     assert re.search(r"m in [\d.]+ s, fell at [\d.]+ s", capsys.readouterr().out)
 
 
-@pytest.mark.skipif(bool(qemu.missing()), reason=qemu.missing() or "-")
+@pytest.mark.targets
 def test_host_and_cortex_m4_send_the_same_bits(monkeypatch, capsys):
     """While standing and in the first step: one in 250 passes of the figure in docs/joints.md."""
     monkeypatch.setattr("saddlewalk.physics.joint_chain.STOPPING_S", 0.2)

@@ -2,7 +2,7 @@
 
 #include "frame.h"
 
-#define FRAMES_OF_LEG 6u /* JOINT, and then GAINS */
+#define JOINTS ((size_t)2u * SADDLE_LEG_JOINTS)
 
 /* The signals of a left and a right frame lie alike, as do those of all joints:
  * tools/wire_signals.py checks it. */
@@ -120,15 +120,15 @@ void saddle_wire_encode_joints(const saddle_joint_commands_t *commands,
                                const saddle_estimate_t *estimate, uint8_t counter,
                                saddle_frame_t frames[SADDLE_WIRE_JOINT_FRAMES])
 {
-    for (uint32_t place = 0; place < 2u * FRAMES_OF_LEG; ++place) {
+    for (uint32_t place = 0; place < JOINTS; ++place) {
         const saddle_joint_command_t *command =
-            &commands->joint[place / FRAMES_OF_LEG][place % FRAMES_OF_LEG];
+            &commands->joint[place / SADDLE_LEG_JOINTS][place % SADDLE_LEG_JOINTS];
         encode_joint((uint16_t)(MESSAGE_JOINT_LEFT_HIP_YAW + place), command, counter,
                      &frames[place]);
         encode_gains((uint16_t)(MESSAGE_GAINS_LEFT_HIP_YAW + place), command, counter,
-                     &frames[2u * FRAMES_OF_LEG + place]);
+                     &frames[JOINTS + place]);
     }
-    ENCODE(&frames[4u * FRAMES_OF_LEG], JOINTS_STATE, counter,
+    ENCODE(&frames[2u * JOINTS], JOINTS_STATE, counter,
            CODE(JOINTS_STATE_FALLBACK, commands->fallback) |
                CODE(JOINTS_STATE_FAULTS, estimate->faults) |
                CODE(JOINTS_STATE_LOST_JOINTS, estimate->lost_joints));
