@@ -42,14 +42,15 @@ def loop_settings(config: Any) -> list[tuple[str, str, float]]:
     """Part, name and value of every field of saddle_joint_loop_default() for a
     saddle_config_t, in the order of a controller's settings.
     """
-    lib = library()
+    lib, body = library(), (config.body_height_m, config.body_mass_kg)
+    segments = ffi().new("saddle_legs_t *", lib.saddle_legs_default(*body))
     walk = ffi().new("saddle_joint_walk_config_t *", lib.saddle_joint_walk_default())
     walk.double_support_share = config.double_support_share
     estimator = ffi().new("saddle_estimator_config_t *", lib.saddle_estimator_default())
     drive = ffi().new("saddle_drive_config_t *", lib.saddle_drive_default())
     settings = []
     for part, field_at, values in (
-        ("legs", lib.saddle_legs_field, legs(config.body_height_m, config.body_mass_kg)),
+        ("legs", lib.saddle_legs_field, segments),
         ("estimator", lib.saddle_estimator_field, estimator),
         ("walk", lib.saddle_joint_walk_field, walk),
         ("drive", lib.saddle_drive_field, drive),

@@ -177,8 +177,8 @@ def test_a_configuration_that_saddle_init_rejects_is_reported():
 def test_a_damaged_settings_page_is_rejected(tmp_path, monkeypatch, capsys, bit):
     written = qemu.settings_page
 
-    def damaged(config, clock):
-        page = bytearray(written(config, clock))
+    def damaged(*given):
+        page = bytearray(written(*given))
         page[bit // 8] ^= 1 << bit % 8
         return bytes(page)
 
