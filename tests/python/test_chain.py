@@ -1,20 +1,19 @@
 """The whole chain: a body's sensors by CAN to the firmware, its joint commands by CAN back."""
 
-import importlib.util
 import re
 
 import numpy as np
 import pytest
 
 from saddlewalk.cli import main
+from saddlewalk.config import configuration
+from saddlewalk.physics.plants import PlantChoice
 
-pytestmark = [
-    pytest.mark.firmware,
-    pytest.mark.skipif(
-        importlib.util.find_spec("mujoco") is None or importlib.util.find_spec("piqp") is None,
-        reason="MuJoCo is missing: run `make physics`",
-    ),
-]
+joint_campaign = pytest.importorskip(
+    "saddlewalk.faults.joint_campaign", reason="MuJoCo is missing: run `make physics`"
+)
+
+pytestmark = pytest.mark.firmware
 
 
 def test_a_body_on_can_walks_and_stops(capsys):
@@ -37,9 +36,82 @@ def test_a_fall_is_told(monkeypatch, capsys):
 @pytest.mark.targets
 def test_host_and_cortex_m4_send_the_same_bits(monkeypatch, capsys):
     """While standing and in the first step: one in 250 passes of the figure in docs/joints.md."""
-    monkeypatch.setattr("saddlewalk.physics.joint_chain.STOPPING_S", 0.2)
-    monkeypatch.setattr("saddlewalk.physics.joint_chain.STARTS_AND_STOPS_S", 0.1)
+    monkeypatch.setattr("saddlewalk.physics.joint_chain.STARTS_AND_STOPS_S", -6.0)
     main(["chain", "--distance", "1", "--rate", "250", "--speed", "1", "--firmware", "both"])
     printed = capsys.readouterr().out
     assert printed.endswith("bits of both: equal\n")
     assert "0 lost, 0 not sent" in printed
+
+
+def test_lost_sensors_are_found_and_give_the_fallback_in_the_stated_time():
+    """estimator.max_age_s, 20 ms, and drive.max_age_s, 240 ms, in passes of 4 ms."""
+    outcome = joint_campaign.run(class_of("all sensors", "loss", 1.0), 0, 1, body())
+    assert outcome.violations == ()
+    assert 0.016 <= outcome.detected_s <= 0.028
+    assert 0.24 <= outcome.fallback_s <= 0.268
+
+
+def test_without_a_fault_nothing_is_found():
+    outcome = joint_campaign.run(class_of("nothing", "none", 0.0), 0, 1, body())
+    assert outcome.violations == () and not outcome.fell
+    assert np.isnan(outcome.detected_s) and np.isnan(outcome.fallback_s)
+
+
+def test_the_checker_finds_a_command_beyond_its_limits(monkeypatch):
+    """Of drives that are weaker than the firmware was told."""
+    weaker = joint_campaign.FaultyFirmware._beyond_limits
+
+    def stricter(firmware):
+        before = firmware._settings.drive.joint[3].torque_max_nm
+        firmware._settings.drive.joint[3].torque_max_nm = 20.0
+        found = list(weaker(firmware))
+        firmware._settings.drive.joint[3].torque_max_nm = before
+        return found
+
+    monkeypatch.setattr(joint_campaign.FaultyFirmware, "_beyond_limits", stricter)
+    outcome = joint_campaign.run(class_of("nothing", "none", 0.0), 0, 1, body())
+    assert outcome.violations == ("knee beyond its limits",)
+
+
+def test_the_checker_finds_that_no_fallback_came(monkeypatch):
+    """Of a firmware that waits longer than the checker is told."""
+    monkeypatch.setattr(joint_campaign, "GRACE_S", -0.1)
+    place = class_of("gyroscope", "loss", 1.0)
+    outcome = joint_campaign.run(place, 0, 1, body())
+    assert "walked on without an IMU" in outcome.violations
+
+
+def body():
+    return configuration(PlantChoice("winter", drives_joints=True).fields)
+
+
+def class_of(*wanted) -> int:
+    """Its place among the classes of faults."""
+    (place,) = (
+        place
+        for place, (what, _, kind, strength) in enumerate(joint_campaign.CLASSES)
+        if (what, kind, strength) == wanted
+    )
+    return place
+
+
+def test_faults_prints_the_classes_of_sensors_and_joints(monkeypatch, capsys):
+    monkeypatch.setattr(joint_campaign, "CLASSES", joint_campaign.CLASSES[:2])
+    monkeypatch.setattr(joint_campaign, "campaign", in_this_process)
+    assert main(["faults", "--joints", "--runs", "1", "--seed", "1"]) == 0
+    nothing, gyroscope, *_ = capsys.readouterr().out.splitlines()[3:]
+    assert nothing.split() == "nothing none 0 1 0 - - 0 - 0 0".split()
+    assert gyroscope.split()[:4] == "gyroscope loss 1 1".split()
+    assert gyroscope.split()[4] == "1" and int(gyroscope.split()[8]) <= 268
+
+
+def in_this_process(runs, seed, config, _, progress):
+    progress(0)
+    places = range(len(joint_campaign.CLASSES))
+    return [joint_campaign.run(place, run, seed, config) for place in places for run in range(runs)]
+
+
+@pytest.mark.parametrize("option", [["--live", "3"], ["--body", "winter"]])
+def test_options_that_do_not_go_with_joints_are_named(option, capsys):
+    assert main(["faults", "--joints", *option]) == 2
+    assert f"{' '.join(option)}: not with --joints" in capsys.readouterr().err

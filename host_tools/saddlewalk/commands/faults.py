@@ -3,12 +3,16 @@
 import argparse
 import math
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.options import (
+    JOINTS,
+    MUJOCO,
+    WINTER,
     add_campaign_options,
     add_plant_options,
     whole_number_in,
@@ -19,6 +23,8 @@ from saddlewalk.progress import progress_bar
 
 if TYPE_CHECKING:
     from saddlewalk.faults.campaign import Outcome, Row
+    from saddlewalk.faults.joint_campaign import Outcome as JointOutcome
+    from saddlewalk.faults.joint_campaign import Row as JointRow
     from saddlewalk.faults.scenario import Scenario
     from saddlewalk.physics.plants import PlantChoice
 
@@ -54,6 +60,11 @@ def add_parser(subparsers: Any) -> None:
         help="walks in real time for each class, with saddlewalk-host over UDP and LCM "
         f"(default {LIVE_RUNS})",
     )
+    parser.add_argument(
+        "--joints",
+        action="store_true",
+        help="instead the faults of a device's sensors and joint commands: a body in MuJoCo on CAN",
+    )
     add_campaign_options(parser)
     add_plant_options(parser)
     add_body_options(parser)
@@ -69,6 +80,8 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.paths import source
     from saddlewalk.physics.plants import chosen_plant
 
+    if args.joints:
+        return _of_joints(args)
     plant = chosen_plant(args)
     if plant.is_mujoco and args.live:
         raise UserError(f"--live: walks in real time, not with --plant {args.plant}")
@@ -83,6 +96,54 @@ def run(args: argparse.Namespace) -> int:
         outcomes += live
     console.print(_summary(outcomes, args.seed))
     return 1 if any(outcome.violations for outcome in outcomes) else 0
+
+
+def _of_joints(args: argparse.Namespace) -> int:
+    """Exit status 1 if an output was unsafe."""
+    from rich.console import Console
+
+    from saddlewalk.faults.joint_campaign import CLASSES, campaign, rows_of
+    from saddlewalk.physics.plants import chosen_plant
+
+    given = (("live", args.live or None), ("scenario", args.scenario), ("body", args.body))
+    for option, value in given:
+        if value is not None:
+            raise UserError(f"--{option} {value}: not with --joints, leave it out")
+    args.plant, args.body, args.drive = MUJOCO, WINTER, JOINTS
+    config = load_config(args, body=chosen_plant(args).fields)
+    workers = workers_of(args)
+    with progress_bar("walks", args.runs * len(CLASSES)) as progress:
+        outcomes = campaign(args.runs, args.seed, config, workers, progress)
+    console = Console(width=None if sys.stdout.isatty() else FILE_WIDTH)
+    console.print(_joint_table(rows_of(outcomes)))
+    console.print(_summary(outcomes, args.seed))
+    return 1 if any(outcome.violations for outcome in outcomes) else 0
+
+
+def _joint_table(rows: list["JointRow"]) -> Any:
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    table = Table(box=SIMPLE_HEAD)
+    for name in ("of", "fault"):
+        table.add_column(name)
+    for name in (
+        *("strength", "walks", "detected", "median ms", "max ms"),
+        *("fallback", "max ms", "unsafe", "fell"),
+    ):
+        table.add_column(name, justify="right")
+    for row in rows:
+        table.add_row(
+            *(row.what, row.kind, f"{row.strength:g}", f"{row.walks}", f"{row.detected}"),
+            *(_milliseconds(row.detected_ms), _milliseconds(row.detected_max_ms)),
+            *(f"{row.fallbacks}", _milliseconds(row.fallback_max_ms)),
+            *(f"{row.unsafe}", f"{row.fell}"),
+        )
+    return table
+
+
+def _milliseconds(value: float) -> str:
+    return f"{value:.0f}" if math.isfinite(value) else "-"
 
 
 def _in_lockstep(
@@ -146,7 +207,7 @@ def _number(value: float) -> str:
     return f"{value:g}" if math.isfinite(value) else "-"
 
 
-def _summary(outcomes: list["Outcome"], seed: int) -> str:
+def _summary(outcomes: "Sequence[Outcome | JointOutcome]", seed: int) -> str:
     from collections import Counter
 
     unsafe = [outcome for outcome in outcomes if outcome.violations]

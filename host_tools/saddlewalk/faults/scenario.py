@@ -147,10 +147,16 @@ def _stuck(_: float, __: np.random.Generator) -> Disturbance:
     return disturb
 
 
+def _numbers(frame: can.Message) -> tuple[str, ...]:
+    """What an input of CoM and feet measures or commands, and every number of another frame."""
+    name = wire.known_name(frame.arbitration_id)
+    return _NUMBERS.get(name) or wire.numbers(name)
+
+
 def _added(arrival: Arrival, amount: Callable[[str], float]) -> list[Arrival]:
     """The frame with amount(signal) added to each number, in its unit."""
     values = wire.signals(arrival.frame)
-    names = _NUMBERS[wire.known_name(arrival.frame.arbitration_id)]
+    names = _numbers(arrival.frame)
     numbers = {name: values[name] + amount(name) for name in names}
     return [replace(arrival, frame=wire.changed(arrival.frame, **numbers))]
 
@@ -214,7 +220,7 @@ def _nan(share: float, random: np.random.Generator) -> Disturbance:
     def disturb(arrival: Arrival) -> list[Arrival]:
         if random.random() >= share:
             return [arrival]
-        names = _NUMBERS[wire.known_name(arrival.frame.arbitration_id)]
+        names = _numbers(arrival.frame)
         broken = {str(random.choice(names)): math.nan}
         return [replace(arrival, frame=wire.changed(arrival.frame, **broken))]
 

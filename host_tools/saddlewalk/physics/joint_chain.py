@@ -48,6 +48,7 @@ class Course:
     distance_m: float
     rate_hz: int  # of the sensors and the joint commands
     seed: int = 0
+    stopping_s: float = STOPPING_S  # from the command to stop to the end
 
     @property
     def stop_s(self) -> float:
@@ -180,7 +181,7 @@ def walk(bus: FrameBus, config: Any, course: Course) -> Outcome:
             device.sense()
         device.exchange(0.0)
     passes, fallbacks, unsound, fell_at_s = 0, 0, 0, math.nan
-    end_s = course.stop_s + STOPPING_S
+    end_s = course.stop_s + course.stopping_s
     for passes in range(round(end_s * course.rate_hz)):
         device.exchange(passes / course.rate_hz)
         fallbacks += int(device.state["FALLBACK"])

@@ -230,6 +230,12 @@ def known_name(identifier: int) -> str:
     return _by_id[identifier].name
 
 
+def numbers(name: str) -> tuple[str, ...]:
+    """The signals of a message of the database that are numbers, not counts or codes."""
+    signals_of = _by_name[name].signals
+    return tuple(signal for signal, codec in signals_of.items() if codec.is_number)
+
+
 def message_name(identifier: int) -> str | None:
     """The name that the database has for an identifier, if any."""
     return _by_id[identifier].name if identifier in _by_id else None
