@@ -65,6 +65,7 @@ def command(harness: str, signals: Path) -> list[str]:
         *("-warn-special-float", "none"),  # NaN and infinity are values; as integers they are not
         "-kernel-warn-key=typing:implicit-function-declaration=abort",
         *("-eva-domains", "octagon", "-eva-split-return", "full"),
+        *("-eva-ilevel", "16"),  # more messages are received than 8
         *("-eva-auto-loop-unroll", str(unrolled)),
         *(["-eva-slevel-function", apart] if apart else []),
         f"-cpp-extra-args={includes} -include {HERE}/eva.h -DSADDLE_WIRE_VERSION={version[1]}",

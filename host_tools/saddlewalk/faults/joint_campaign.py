@@ -84,7 +84,7 @@ class Outcome:
 
 
 class FaultyFirmware:
-    """The firmware that drives joints, behind a line with a fault, as a bus: what is sent goes to it,
+    """The firmware that drives joints, behind a faulty line, as a bus: what is sent goes to it,
     and when nothing waits any more it makes its next pass.
     """
 
