@@ -108,7 +108,8 @@ def test_the_wire_builds_without_cmake_to_the_same_frames(installed, tmp_path):
     wire, dbc = CHECKOUT / "firmware/wire", CHECKOUT / "firmware/wire/saddlewalk.dbc"
     generator = CHECKOUT / "tools/wire_signals.py"
     run(cached("Python3_EXECUTABLE"), generator, dbc, tmp_path / "wire_signals.h")
-    include = [f"-I{folder}" for folder in (CORE / "include", wire / "include", tmp_path)]
+    rooms = [CHECKOUT / "firmware" / room / "include" for room in ("core", "joints", "wire")]
+    include = [f"-I{folder}" for folder in (*rooms, tmp_path)]
     version = re.match(r'VERSION "(\d+)"', dbc.read_text())[1]
     flags = ["-ffp-contract=off", f"-DSADDLE_WIRE_VERSION={version}"]
     run(CHECKOUT / "tools/amalgamate.py", tmp_path / "core.c")
