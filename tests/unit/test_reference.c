@@ -161,6 +161,41 @@ static void test_reference_follows_the_bent_way(void)
     TEST_ASSERT_TRUE(plan.curvature_1_m[1] < -0.3f);
 }
 
+static double onward(double cop, double xcom, double w)
+{
+    return cop + (xcom - cop) * exp(w * TICK_S);
+}
+
+/* [E49] In a steady turn, by the same closed form on the ground. */
+static void test_reference_in_a_turn_is_a_pendulum_about_its_cop(void)
+{
+    const saddle_model_t *model = model_of(&config);
+    const double w = (double)model->body.natural_frequency_rad_s;
+    const saddle_command_t command = {(uint8_t)SADDLE_COMMAND_WALK, 0.6f, 0.17f, -0.4f};
+    saddle_planner_join(&planner, model, &command);
+    for (int tick = 0; tick < 3000; tick++) {
+        saddle_planner_update(&planner, model, &command, NULL, TICK_US);
+    }
+    saddle_plan_write(&planner, model, &plan);
+    saddle_plan_bend(&planner.cycle.way, model, &plan);
+    int corners = 0;
+    saddle_reference_t last;
+    saddle_reference_after_plan(model, &plan, 0.0f, &last);
+    for (int k = 1; k < 700; k++) {
+        saddle_reference_t next;
+        saddle_reference_after_plan(model, &plan, (float)(k * TICK_S), &next);
+        const double x =
+            onward(0.5 * ((double)last.cop_m.x + (double)next.cop_m.x), (double)last.xcom_m.x, w);
+        const double y =
+            onward(0.5 * ((double)last.cop_m.y + (double)next.cop_m.y), (double)last.xcom_m.y, w);
+        const double off = hypot(x - (double)next.xcom_m.x, y - (double)next.xcom_m.y);
+        corners += off > 5e-6 ? 1 : 0;
+        TEST_ASSERT_DOUBLE_WITHIN(3e-4, 0.0, off);
+        last = next;
+    }
+    TEST_ASSERT_TRUE(corners <= 2); /* of the landing, and of the crossing's end */
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -171,5 +206,6 @@ int main(void)
     RUN_TEST(test_a_plan_without_a_step_keeps_its_landing);
     RUN_TEST(test_who_stands_is_at_rest_between_the_feet);
     RUN_TEST(test_reference_follows_the_bent_way);
+    RUN_TEST(test_reference_in_a_turn_is_a_pendulum_about_its_cop);
     return UNITY_END();
 }

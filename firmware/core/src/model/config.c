@@ -128,7 +128,7 @@ saddle_config_t saddle_config_default(float body_height_m, float body_mass_kg)
         .heel_strike_max_rad = 0.5236f,
         .strike_share = 0.0f,
         .acceleration_m_s2 = 0.5f,
-        .turn_acceleration_rad_s2 = 0.5f,
+        .turn_acceleration_rad_s2 = 0.25f,
         .turn_step_max_rad = 0.5f,
         .shift_time_s = 0.8f,
         .step_length_factor_left = 1.0f,

@@ -504,22 +504,37 @@ SADDLE_NOINLINE void saddle_reference(const saddle_model_t *model, const saddle_
     }
 }
 
-/* The rate is that of the XCoM's distance, per natural frequency. */
+/* [E49] From the CoP that moves the pendulum so, to its CoM. lever_m: where the way is straight, along and
+ * across it; rate_m: of the CoM, per natural frequency; n: its distance from the line, of the radius. */
+static saddle_vec2_t bent_lever_m(saddle_vec2_t lever_m, saddle_vec2_t rate_m, float curvature_1_m,
+                                  float n)
+{
+    return (saddle_vec2_t){
+        (1.0f - n) * lever_m.x - 2.0f * curvature_1_m * rate_m.x * rate_m.y,
+        lever_m.y + (1.0f - n) * curvature_1_m * rate_m.x * rate_m.x,
+    };
+}
+
 void saddle_reference_bend(const saddle_model_t *model, const saddle_plan_t *plan,
                            saddle_reference_t *reference)
 {
     const float w = model->body.natural_frequency_rad_s;
-    const saddle_vec2_t ahead_m = saddle_vec2_sub(reference->xcom_m, reference->com_m);
-    saddle_course_t com = {reference->com_m, saddle_vec2_scale(w, ahead_m)};
+    const saddle_vec2_t rate_m = saddle_vec2_sub(reference->xcom_m, reference->com_m);
+    const saddle_vec2_t lever_m = saddle_vec2_sub(reference->com_m, reference->cop_m);
+    const float curvature_1_m = plan->curvature_1_m[reference->com_m.x < 0.0f ? 0 : 1];
+    saddle_course_t com = {reference->com_m, saddle_vec2_scale(w, rate_m)};
     saddle_arc_t arcs[2];
     saddle_way_of(plan, arcs);
-    com.place_m.y +=
-        saddle_lean_m(model, plan->curvature_1_m[com.place_m.x < 0.0f ? 0 : 1], plan->speed_m_s);
+    com.place_m.y += saddle_lean_m(model, curvature_1_m, plan->speed_m_s);
     const saddle_on_ground_t ground = saddle_way_to_ground(arcs, &com);
+    const saddle_vec2_t bent_m =
+        bent_lever_m(lever_m, rate_m, curvature_1_m, curvature_1_m * com.place_m.y);
+    const saddle_sin_cos_t yaw = saddle_sin_cos(ground.yaw_rad);
     reference->com_m = ground.position_m;
     reference->xcom_m =
         saddle_vec2_add(ground.position_m, saddle_vec2_scale(1.0f / w, ground.velocity_m_s));
-    reference->cop_m = saddle_way_point_to_ground(arcs, reference->cop_m);
+    reference->cop_m.x = ground.position_m.x - (yaw.cos * bent_m.x - yaw.sin * bent_m.y);
+    reference->cop_m.y = ground.position_m.y - (yaw.sin * bent_m.x + yaw.cos * bent_m.y);
 }
 
 void saddle_reference_after_plan(const saddle_model_t *model, const saddle_plan_t *plan,
