@@ -6,6 +6,7 @@
 #include <linux/filter.h>
 #include <linux/if_packet.h>
 #include <saddlewalk_command_t.h>
+#include <saddlewalk_command_turn_t.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -18,7 +19,14 @@
 /** A message that is not in fragments: magic number, sequence number, channel, payload. */
 #define MAGIC 0x4C433032u
 #define CHANNEL "SADDLEWALK_COMMAND"
-enum { UDP_HEADER = 8, HEADER = 8, PAYLOAD = HEADER + sizeof CHANNEL, DATAGRAM_MAX = 256 };
+#define TURN_CHANNEL CHANNEL "_TURN"
+enum {
+    UDP_HEADER = 8,
+    HEADER = 8,
+    PAYLOAD = HEADER + sizeof CHANNEL,
+    TURN_PAYLOAD = HEADER + sizeof TURN_CHANNEL,
+    DATAGRAM_MAX = 256
+};
 
 /** Loopback has this index in every network namespace. */
 #define LOOPBACK_INDEX 1
@@ -48,7 +56,7 @@ static struct sockaddr_in group_of(const char *url)
 }
 
 /**
- * Keeps messages on the channel of commands: whole, if they were sent on this machine, and without
+ * Keeps messages on the channels of commands: whole, if they were sent on this machine, and without
  * their payload if they came from another one, or whole as well with `from_network`. What this
  * machine sends comes back by loopback, or as the kernel's own copy of what it sends elsewhere.
  */
@@ -62,22 +70,23 @@ static bool attach_filter(int fd, bool from_network)
 #define FOUR(text)                                                                      \
     ((uint32_t)(text)[0] << 24 | (uint32_t)(text)[1] << 16 | (uint32_t)(text)[2] << 8 | \
      (uint32_t)(text)[3])
-    static const uint8_t channel[] = CHANNEL; /* 18 letters and the 0 that ends it */
+    static const uint8_t channel[] = TURN_CHANNEL; /* 18 letters, which a 0 or a _ follows */
     /* clang-format off: a row for each comparison */
     struct sock_filter steps[] = {
         LOAD(BPF_W, UDP_HEADER),
-        UNLESS(MAGIC, 18),
+        UNLESS(MAGIC, 19),
         LOAD(BPF_W, UDP_HEADER + HEADER),
-        UNLESS(FOUR(channel), 16),
+        UNLESS(FOUR(channel), 17),
         LOAD(BPF_W, UDP_HEADER + HEADER + 4),
-        UNLESS(FOUR(channel + 4), 14),
+        UNLESS(FOUR(channel + 4), 15),
         LOAD(BPF_W, UDP_HEADER + HEADER + 8),
-        UNLESS(FOUR(channel + 8), 12),
+        UNLESS(FOUR(channel + 8), 13),
         LOAD(BPF_W, UDP_HEADER + HEADER + 12),
-        UNLESS(FOUR(channel + 12), 10),
+        UNLESS(FOUR(channel + 12), 11),
         LOAD(BPF_H, UDP_HEADER + HEADER + 16),
-        UNLESS('N' << 8 | 'D', 8),
+        UNLESS('N' << 8 | 'D', 9),
         LOAD(BPF_B, UDP_HEADER + HEADER + 18),
+        IF('_', 1),
         UNLESS(0, 6),
         LOAD(BPF_W, SKF_AD_OFF + SKF_AD_IFINDEX),
         IF(LOOPBACK_INDEX, 3),
@@ -122,11 +131,46 @@ int saddle_lcm_commands_open(const char *url, bool from_network)
     return -1;
 }
 
+static bool decode_command(const uint8_t *bytes, int size, saddle_command_t *command)
+{
+    saddlewalk_command_t message;
+    if (saddlewalk_command_t_decode(bytes, 0, size, &message) != size) {
+        return false;
+    }
+    *command = (saddle_command_t){.mode = (uint8_t)message.mode,
+                                  .speed_m_s = message.speed_m_s,
+                                  .heel_strike_rad = message.heel_strike_rad};
+    return true;
+}
+
+static bool decode_turn(const uint8_t *bytes, int size, saddle_command_t *command)
+{
+    saddlewalk_command_turn_t message;
+    if (saddlewalk_command_turn_t_decode(bytes, 0, size, &message) != size) {
+        return false;
+    }
+    *command = (saddle_command_t){.mode = (uint8_t)message.mode,
+                                  .speed_m_s = message.speed_m_s,
+                                  .heel_strike_rad = message.heel_strike_rad,
+                                  .turn_rate_rad_s = message.turn_rate_rad_s};
+    return true;
+}
+
+/** Of a datagram that passed the filter. */
+static bool decode(const uint8_t *datagram, int size, saddle_command_t *command)
+{
+    if (datagram[PAYLOAD - 1] == 0) {
+        return decode_command(datagram + PAYLOAD, size - PAYLOAD, command);
+    }
+    return size >= TURN_PAYLOAD &&
+           memcmp(datagram + HEADER, TURN_CHANNEL, sizeof TURN_CHANNEL) == 0 &&
+           decode_turn(datagram + TURN_PAYLOAD, size - TURN_PAYLOAD, command);
+}
+
 saddle_lcm_received_t saddle_lcm_commands_receive(int fd, saddle_lcm_arrival_t *arrival)
 {
     uint8_t datagram[DATAGRAM_MAX + 1]; /* one more: a longer datagram shows as too long */
     struct sockaddr_in source;
-    saddlewalk_command_t message;
     const ssize_t size =
         saddle_receive_stamped(fd, datagram, sizeof datagram, (struct sockaddr *)&source,
                                sizeof source, &arrival->waited_us);
@@ -137,12 +181,5 @@ saddle_lcm_received_t saddle_lcm_commands_receive(int fd, saddle_lcm_arrival_t *
     if (size < PAYLOAD) {
         return SADDLE_LCM_FOREIGN;
     }
-    const int length = (int)size - PAYLOAD;
-    if (saddlewalk_command_t_decode(datagram, PAYLOAD, length, &message) != length) {
-        return SADDLE_LCM_JUNK;
-    }
-    arrival->command = (saddle_command_t){.mode = (uint8_t)message.mode,
-                                          .speed_m_s = message.speed_m_s,
-                                          .heel_strike_rad = message.heel_strike_rad};
-    return SADDLE_LCM_COMMAND;
+    return decode(datagram, (int)size, &arrival->command) ? SADDLE_LCM_COMMAND : SADDLE_LCM_JUNK;
 }

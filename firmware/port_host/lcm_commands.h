@@ -1,6 +1,7 @@
 /**
- * Commands by LCM. liblcm hands over a message without its sender, so they are received on a socket
- * of their own, which reads LCM's UDP multicast datagrams:
+ * Commands by LCM: command_t, which goes straight on, and command_turn_t. liblcm hands over a message
+ * without its sender, so they are received on a socket of their own, which reads LCM's UDP multicast
+ * datagrams:
  * https://lcm-proj.github.io/lcm/content/udp-multicast-protocol.html
  * By default only commands sent on this machine are accepted. A filter in the kernel decides
  * that by the way a datagram came, not by its source address, and drops all other channels before
@@ -17,7 +18,7 @@
 typedef enum {
     SADDLE_LCM_EMPTY, /**< no message is waiting */
     SADDLE_LCM_COMMAND,
-    SADDLE_LCM_JUNK,   /**< on the channel of commands, but no command_t */
+    SADDLE_LCM_JUNK,   /**< on a channel of commands, but not of its type */
     SADDLE_LCM_FOREIGN /**< a command from another machine, which does not count */
 } saddle_lcm_received_t;
 

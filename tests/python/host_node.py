@@ -112,7 +112,7 @@ class LcmNode:
     def __init__(self, url: str) -> None:
         self.lcm = open_lcm(url)
         self.latest = {}
-        channels = "SADDLEWALK_(INPUT|PLAN|SCORES|VERDICT|BALANCE|BOS|STATUS|HEALTH)"
+        channels = "SADDLEWALK_(INPUT|TURN|PLAN|SCORES|VERDICT|BALANCE|BOS|STATUS|HEALTH)"
         self.lcm.subscribe(channels, self._take).set_queue_capacity(1000)
 
     def _take(self, channel: str, data: bytes) -> None:
@@ -134,6 +134,14 @@ class LcmNode:
         message = command_t()
         message.mode, message.speed_m_s = mode, speed_m_s
         self.lcm.publish("SADDLEWALK_COMMAND", message.encode())
+
+    def turn(self, speed_m_s: float, turn_rate_rad_s: float) -> None:
+        from saddlewalk.transport.lcm_types import command_turn_t
+
+        message = command_turn_t()
+        message.mode, message.speed_m_s = message.MODE_WALK, speed_m_s
+        message.turn_rate_rad_s = turn_rate_rad_s
+        self.lcm.publish("SADDLEWALK_COMMAND_TURN", message.encode())
 
 
 def own_lcm() -> str:

@@ -379,7 +379,7 @@ def test_demo_with_a_new_key_sends_only_authenticated_commands(tmp_path, ports, 
     log = lcm.EventLog(str(tmp_path / "walk.lcmlog"), "r")
     heard = list(log)
     log.close()
-    assert "SADDLEWALK_COMMAND" not in {event.channel for event in heard}
+    assert "SADDLEWALK_COMMAND_TURN" not in {event.channel for event in heard}
     statuses = [
         status_t.decode(event.data) for event in heard if event.channel == "SADDLEWALK_STATUS"
     ]
@@ -443,7 +443,7 @@ def test_an_interrupted_demo_keeps_its_logs_and_stops_the_firmware(tmp_path, por
     with can.CanutilsLogReader(tmp_path / "walk.candump.log") as log:
         assert sum(1 for _ in log) >= 4 * 12
     log = lcm.EventLog(str(tmp_path / "walk.lcmlog"), "r")
-    assert {event.channel for event in log} == {*CHANNELS, "SADDLEWALK_COMMAND"}
+    assert {event.channel for event in log} == {*CHANNELS, "SADDLEWALK_COMMAND_TURN"}
     log.close()
     with open_bus(ports[1]) as bus:
         assert bus.recv(3 * TICK_S) is None

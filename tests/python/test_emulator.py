@@ -1,5 +1,6 @@
 """The emulated wearer: its physics, that it can fall, and that it walks as people do."""
 
+import cmath
 import itertools
 import math
 from dataclasses import replace
@@ -42,7 +43,7 @@ def default_config():
     return config_with()
 
 
-Speeds = float | list[tuple[float, float]]
+Speeds = float | list[tuple[float, ...]]
 
 
 def walk(wearer: Wearer, speeds: Speeds, duration_s: float, watch=None, **fields: float) -> Wearer:
@@ -359,7 +360,7 @@ def landings_missed_by(
             missed.append((wearer.time_s, abs(swing.position_m - stance.position_m - planned_m)))
         contact[:] = [foot.contact for foot in wearer.feet]
         held = stance.position_m - plan.feet_m[plan.support], swing.position_m - plan.landing_m
-        assert wearer.fallen or min(abs(wearer.origin_m - origin) for origin in held) < 1e-12
+        assert wearer.fallen or min(abs(wearer.in_world(0j) - origin) for origin in held) < 1e-12
 
     walk(wearer, speed_m_s, duration_s, watch)
     return missed
@@ -391,7 +392,7 @@ def test_unperturbed_variability_is_that_of_people(speed_m_s):
         y = plan.com_m.imag * turn + plan.velocity_m_s.imag / omega * sine
         vy = plan.velocity_m_s.imag * turn - plan.com_m.imag * omega * sine
         planned = complex(plan.com_m.real + plan.speed_m_s * (age + 1 / w), y + vy / w)
-        errors.append(wearer.xcom_m - wearer.origin_m - planned)
+        errors.append(wearer.xcom_m - wearer.in_world(0j) - planned)
         speeds.append(wearer.velocity_m_s.real)
         turns.append(plan.step_s)
 
@@ -461,7 +462,71 @@ def test_a_lost_plan_ends_the_walk_and_the_wearer_puts_both_feet_down():
     assert wearer.feet[LEFT].contact and wearer.feet[RIGHT].contact
     plan = next(ticks).plan
     stance = wearer.feet[plan.support].position_m
-    assert abs(wearer.origin_m + plan.feet_m[plan.support] - stance) < 1e-12
+    assert abs(wearer.in_world(0j) + plan.feet_m[plan.support] - stance) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "turn_rad_s"), [(0.6, 0.4), (0.6, -0.4), (0.8, -0.3), (1.2, 0.28)]
+)
+def test_a_turn_is_walked_round_a_circle_and_is_stable(speed_m_s, turn_rad_s):
+    """Of the radius of the way less the lean, within the wearer's own unsteadiness."""
+    wearer = Wearer(seed=4)
+    schedule = schedule_of([(0.0, speed_m_s), (4.0, speed_m_s, turn_rad_s)], math.radians(10))
+    places, headings, levels = [], [], set()
+    for tick in closed_loop.walk(default_config(), wearer, schedule):
+        if tick.time_s > 8.0:
+            places.append(wearer.com_m)
+            headings.append(wearer.heading_rad)
+            levels.add(tick.output.verdict.level)
+        if tick.time_s > 8.0 + math.tau / abs(turn_rad_s):
+            break
+    assert levels == {STABLE} and not wearer.fallen
+    turned = np.unwrap(headings)[-1] - headings[0]
+    assert turned == pytest.approx(math.copysign(math.tau, turn_rad_s), abs=0.02)
+    x, y = np.real(places), np.imag(places)
+    design = np.column_stack([2 * x, 2 * y, np.ones_like(x)])
+    centre = np.linalg.lstsq(design, x**2 + y**2, rcond=None)[0][:2]
+    lean_m = speed_m_s * abs(turn_rad_s) / wearer.body.natural_frequency_rad_s**2
+    radius_m = np.hypot(x - centre[0], y - centre[1]).mean()
+    assert radius_m == pytest.approx(speed_m_s / abs(turn_rad_s) - lean_m, abs=0.02)
+
+
+def after_a_turn(turn_rad_s: float, pushes: tuple[Push, ...] = ()) -> Wearer:
+    """Who goes straight on, in another direction."""
+    speeds = [(0.0, 0.8), (3.0, 0.8, turn_rad_s), (9.0, 0.8)]
+    return walk(Wearer(noise=STEADY, pushes=pushes), speeds, 14.0)
+
+
+def test_a_device_measures_in_the_axes_of_the_pelvis():
+    """After a turn as without one; they walk in phase."""
+    left, right = after_a_turn(0.3), after_a_turn(-0.3)
+    assert left.heading_rad == pytest.approx(1.8, abs=0.3 * 0.7)  # by landings, each 0.69 s
+    assert right.heading_rad == pytest.approx(-left.heading_rad, abs=0.02)
+    straight = walk(Wearer(noise=STEADY), 0.8, 14.0)
+    for wearer in (left, right):
+        measured, expected = wearer.exact(), straight.exact()
+        assert measured.velocity_m_s.real == pytest.approx(expected.velocity_m_s.real, abs=0.05)
+        for foot_m, expected_m in zip(measured.feet_m, expected.feet_m, strict=True):
+            assert foot_m.imag == pytest.approx(expected_m.imag, abs=0.02)
+
+
+def test_a_push_to_the_left_is_to_the_left_of_the_heading():
+    wearer = after_a_turn(0.3, pushes=(Push(5.0, 12.0, 90.0),))
+    to_the_left = cmath.rect(5.0, wearer.heading_rad + math.pi / 2)
+    assert wearer.pushed_n_s == pytest.approx(to_the_left, abs=0.01)
+
+
+def test_a_recovery_step_of_a_turn_lies_on_its_arc():
+    """The core says it along and across the way: the planned one is the plan's on the ground."""
+    wearer, compared = Wearer(noise=STEADY), 0
+    speeds = schedule_of([(0.0, 0.6), (2.0, 0.6, 0.35)], 0.17)
+    for tick in itertools.islice(closed_loop.walk(default_config(), wearer, speeds), 200):
+        plan, step = tick.plan, tick.plan.recovery
+        if tick.time_s > 8.0 and step and plan.time_to_landing_s > 0.1:
+            planned_m = plan.landing_m - plan.feet_m[plan.support]
+            assert step.landing_m == pytest.approx(planned_m, abs=0.06)
+            compared += abs(step.landing_m - planned_m) < 0.01
+    assert compared > 20
 
 
 @pytest.mark.parametrize(

@@ -370,6 +370,26 @@ def speed_after(node: LcmNode, expected_m_s: float) -> float:
     return next((p.speed_m_s for p in plans if abs(p.speed_m_s - expected_m_s) < 1e-4), math.nan)
 
 
+def test_a_command_turns_and_an_older_one_goes_straight_on():
+    url = own_lcm()
+    with Host("--lcm", url, COMMAND_HOLDS, *QUICK) as host:
+        node = LcmNode(url)
+        node.turn(0.8, 0.3)
+        assert turning_rate_after(node, 0.3) == pytest.approx(0.3)
+        node.turn(0.8, -0.2)
+        assert turning_rate_after(node, -0.2) == pytest.approx(-0.2)
+        node.command(1, 0.8)
+        assert turning_rate_after(node, 0.0) == 0
+        assert "commands: 3 applied, 0 unusable, 0 ignored, " in host.stop()
+
+
+def turning_rate_after(node: LcmNode, expected_rad_s: float) -> float:
+    """That of the ticks' inputs once it is the expected one."""
+    turns = (node.take()["SADDLEWALK_TURN"] for _ in range(40))
+    rates = (turn.turn_rate_rad_s for turn in turns)
+    return next((rate for rate in rates if abs(rate - expected_rad_s) < 1e-4), math.nan)
+
+
 def test_bad_lcm_commands_are_counted_and_not_used():
     url = own_lcm()
     with Host("--lcm", url, COMMAND_HOLDS, *QUICK) as host:
@@ -381,12 +401,16 @@ def test_bad_lcm_commands_are_counted_and_not_used():
         sender = open_lcm(url)
         for junk in (b"", b"junk", bytes(17), bytes(1000)):
             sender.publish("SADDLEWALK_COMMAND", junk)
+            sender.publish("SADDLEWALK_COMMAND_TURN", junk)
+        for other in ("SADDLEWALK_COMMAND_T", "SADDLEWALK_COMMAND_TURNS"):
+            sender.publish(other, bytes(40))
+        sender.publish("SADDLEWALK_COMMANDS", bytes(40))
         node.take()
         node.take()
         on_lcm = node.take()
         assert on_lcm["SADDLEWALK_PLAN"].speed_m_s == pytest.approx(0.8)
-        assert on_lcm["SADDLEWALK_HEALTH"].commands_rejected == 6
-        assert "1 applied, 6 unusable, 0 ignored, " in host.stop()
+        assert on_lcm["SADDLEWALK_HEALTH"].commands_rejected == 12
+        assert "1 applied, 12 unusable, 0 ignored, " in host.stop()
 
 
 @pytest.mark.parametrize(

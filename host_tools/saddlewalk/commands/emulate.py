@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from saddlewalk.config import add_body_options, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.options import (
+    JOINTS,
     MUJOCO,
     add_gait_options,
     add_plant_options,
@@ -199,11 +200,14 @@ def wearer_of(
 
 
 def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":
-    """The speeds of --schedule or --speed."""
-    from saddlewalk.planning.schedule import read_schedule
+    """The speeds and turning rates of --schedule, or the speed of --speed."""
+    from saddlewalk.planning import schedule
 
     if args.schedule:
-        return [(wish.from_s, wish.speed_m_s) for wish in read_schedule(args.schedule)]
+        changes = schedule.read_schedule(args.schedule)
+        if args.drive == JOINTS:
+            schedule.check_straight(args.schedule, changes, f"--drive {JOINTS}")
+        return schedule.speeds_of(changes)
     return default if args.speed is None else [(0.0, args.speed)]
 
 

@@ -271,7 +271,7 @@ class Exoskeleton:
 
     def _ignores_command(self, plan: Plan | None) -> bool:
         """The firmware does not stand before the walk, or stands despite a walk command."""
-        to_walk = self._command(self._wearer.time_s)[0] == WALK
+        to_walk = self._command(self._wearer.time_s)["MODE"] == WALK
         return not self._begun or (to_walk and plan is not None and plan.mode == STANDING)
 
     def _advance(self, steps: int) -> None:
@@ -296,17 +296,21 @@ class Exoskeleton:
         for observer in self._observers:
             observer.frame(frame)
 
-    def _command(self, time_s: float) -> tuple[int, float, float]:
-        """Mode, speed and heel-strike angle to command at that time of the walk."""
+    def _command(self, time_s: float) -> dict[str, float]:
+        """The signals of the COMMAND at that time of the walk."""
         asked = self._schedule(time_s)
         speed_m_s = asked.speed_m_s or 0.0
         walk = self._begun and speed_m_s > 0
-        return WALK if walk else STAND, speed_m_s, asked.heel_strike_rad
+        return {
+            "MODE": WALK if walk else STAND,
+            "SPEED": speed_m_s,
+            "HEEL_STRIKE": asked.heel_strike_rad,
+            "TURN_RATE": asked.turn_rate_rad_s,
+        }
 
     def _send_command_frame(self, time_s: float) -> None:
         """With authentication nothing is sent before the firmware has opened a session."""
-        names = ("MODE", "SPEED", "HEEL_STRIKE")
-        command = dict(zip(names, self._command(time_s), strict=True))
+        command = self._command(time_s)
         if self._authenticator:
             frames = self._authenticator.frames(self._sender, **command)
         else:
@@ -339,12 +343,15 @@ class Exoskeleton:
         (self._send_command_frame if self._authenticator else self._publish_command)(tick_s)
 
     def _publish_command(self, time_s: float) -> None:
-        from saddlewalk.transport.lcm_types import command_t
+        from saddlewalk.transport.lcm_types import command_turn_t
 
-        message = command_t()
+        command = self._command(time_s)
+        message = command_turn_t()
         message.utime_us = time.time_ns() // 1000
-        message.mode, message.speed_m_s, message.heel_strike_rad = self._command(time_s)
-        self._lcm.publish("SADDLEWALK_COMMAND", message.encode())
+        message.mode, message.speed_m_s = int(command["MODE"]), command["SPEED"]
+        message.heel_strike_rad = command["HEEL_STRIKE"]
+        message.turn_rate_rad_s = command["TURN_RATE"]
+        self._lcm.publish("SADDLEWALK_COMMAND_TURN", message.encode())
 
     def _publish_truth(self) -> None:
         if self._lcm is None:

@@ -4,11 +4,12 @@ from typing import Any
 
 from saddlewalk.core import Core, ffi
 from saddlewalk.emulation.wearer import Plan, RecoveryStep, Reference
+from saddlewalk.planning.ground import on_arc
 
 
 def plan_of(output: Any, core: Core) -> Plan:
     """The plan and the recovery step of a saddle_output_t; core: any with its configuration."""
-    plan = planned(output.plan, core, _recovery_of(output.verdict))
+    plan = planned(output.plan, core, _recovery_of(output))
     assert plan is not None  # a tick that did not fail has one
     return plan
 
@@ -32,6 +33,9 @@ def planned(plan: Any, core: Core, recovery: RecoveryStep | None = None) -> Plan
     return Plan(
         mode=plan.mode,
         support=plan.support,
+        heading_rad=plan.heading_rad,
+        yaw_rad=tuple(plan.foot_yaw_rad),
+        pelvis_yaw_rad=plan.pelvis_yaw_rad,
         step_length_m=plan.step_length_m,
         speed_m_s=plan.speed_m_s,
         com_m=_point(plan.com_m),
@@ -51,11 +55,15 @@ def planned(plan: Any, core: Core, recovery: RecoveryStep | None = None) -> Plan
     )
 
 
-def _recovery_of(verdict: Any) -> RecoveryStep | None:
-    step = verdict.recovery
+def _recovery_of(output: Any) -> RecoveryStep | None:
+    """The core says it along and across the way."""
+    step, plan = output.verdict.recovery, output.plan
     if not step.found:
         return None
-    return RecoveryStep(step.foot, _point(step.landing_m), _point(verdict.xcom_deviation_m))
+    landing_m, stance_m = _point(step.landing_m), _point(plan.foot_m[plan.support])
+    curvature_1_m = plan.curvature_1_m[landing_m.real >= 0]
+    landing_m = on_arc(curvature_1_m, landing_m + stance_m) - stance_m
+    return RecoveryStep(step.foot, landing_m, _point(output.verdict.xcom_deviation_m))
 
 
 def _point(vector: Any) -> complex:

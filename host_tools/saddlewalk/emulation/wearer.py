@@ -7,9 +7,11 @@ planned steps, the other takes the firmware's recovery step, within its legs' re
 
 Points of the transverse plane are complex numbers, x forward + 1j * y to the left, in metres: a
 step of 1 ms in plain floats is ten times faster than in arrays. World frame: x from the start,
-y from the first walking line, z from the ground.
+y from the first walking line, z from the ground. A device measures in the axes of the pelvis, which
+has the planned heading.
 """
 
+import cmath
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -101,7 +103,7 @@ class Push:
     STEPS = 100
     impulse_n_s: float
     time_s: float
-    direction_deg: float  # 0 forward, 90 to the left
+    direction_deg: float  # of the wearer's heading: 0 forward, 90 to the left
 
     @property
     def vector_n_s(self) -> complex:
@@ -129,10 +131,14 @@ class Reference:
 
 @dataclass(frozen=True)
 class Plan:
-    """The firmware's plan at one tick: x from the planned stance CoP, y from the walking line."""
+    """The firmware's plan at one tick: x from the planned stance CoP in the heading of that foot, y
+    from the walking line."""
 
     mode: int
     support: int
+    heading_rad: float  # of x, in the world
+    yaw_rad: tuple[float, float]  # of the feet, from x
+    pelvis_yaw_rad: float
     step_length_m: float
     speed_m_s: float  # exactly 0 while both feet stand
     com_m: complex
@@ -155,6 +161,11 @@ class Plan:
         points = zip((self.com_m, *self.feet_m), (other.com_m, *other.feet_m), strict=True)
         same = (self.mode, self.support) == (other.mode, other.support)
         return same and all(abs(one - another) < BUS_ROUNDING_M for one, another in points)
+
+    @property
+    def ahead(self) -> complex:
+        """The direction of x in the world."""
+        return cmath.rect(1.0, self.heading_rad)
 
     @property
     def both_feet_stand(self) -> bool:
@@ -186,7 +197,7 @@ PlanAt = Callable[[float], Plan | None]  # so many seconds after a tick, up to t
 
 @dataclass(frozen=True)
 class Measurement:
-    """Readings of the exoskeleton's sensors; feet relative to the CoM."""
+    """Readings of the exoskeleton's sensors: x in the heading of the pelvis, feet from the CoM."""
 
     height_m: float
     velocity_m_s: complex
@@ -197,6 +208,7 @@ class Measurement:
 @dataclass
 class Foot:
     position_m: complex
+    yaw_rad: float = 0.0
     height_m: float = 0.0
     velocity_m_s: complex = 0j
     contact: bool = True
@@ -216,10 +228,10 @@ class Wearer:
     """Stands until the first plan comes, and follows it.
 
     The plan's frame is attached to the actual stance foot, so that landing errors do not
-    accumulate. `follow(plan)` gives the newest plan, `step()` advances by 1 ms. One
-    seed and sequence of calls give the same bits. A fall is final: `fallen` when the CoM is lower
-    over every supporting foot than `fall_height` of the pendulum, that is too far away from them to
-    be carried.
+    accumulate, and turned to the planned heading. `follow(plan)` gives the newest plan, `step()`
+    advances by 1 ms. One seed and sequence of calls give the same bits. A fall is final: `fallen`
+    when the CoM is lower over every supporting foot than `fall_height` of the pendulum, that is too
+    far away from them to be carried.
     """
 
     PLAN_MAX_AGE_S = 0.3  # an older plan is not followed any more
@@ -253,7 +265,9 @@ class Wearer:
         self._random = np.random.default_rng(seed)
         self._plan: Plan | None = None
         self._plan_age_s = 0.0
-        self._origin_m = 0j  # of the plan's frame, in the world
+        self._origin_m = 0j  # of the plan's frame, in the world,
+        self._ahead = 1 + 0j  # and the direction of its x
+        self._heading_rad = self._turn_rad_s = 0.0  # of the pelvis at the newest plan; since then
         self._leading = LEFT  # the foot that landed last
         self._since_landing_s = math.inf  # since standing: inf
         self._recovery_shift_m = 0j  # of the landing of the running swing
@@ -280,8 +294,13 @@ class Wearer:
 
     @property
     def recovery_shift_m(self) -> complex:
-        """Of the landing, while a recovery step is taken in need; else 0."""
+        """Of the landing in the plan's axes, while a recovery step is taken in need; else 0."""
         return self._recovery_shift_m if self._hurries else 0j
+
+    @property
+    def heading_rad(self) -> float:
+        """Of the pelvis. Until the next plan it turns on as between the last two."""
+        return self._heading_rad + self._turn_rad_s * self._plan_age_s
 
     @property
     def xcom_m(self) -> complex:
@@ -305,28 +324,38 @@ class Wearer:
 
     def exact(self) -> Measurement:
         """Sensor readings without noise."""
-        left, right = (foot.position_m - self.com_m for foot in self.feet)
+        to_pelvis = cmath.rect(1.0, -self.heading_rad)
+        left, right = ((foot.position_m - self.com_m) * to_pelvis for foot in self.feet)
         return Measurement(
             height_m=self.height_m,
-            velocity_m_s=self.velocity_m_s,
+            velocity_m_s=self.velocity_m_s * to_pelvis,
             feet_m=(left, right),
             contact=(self.feet[LEFT].contact, self.feet[RIGHT].contact),
         )
 
-    @property
-    def origin_m(self) -> complex:
-        """Of the plan's frame, in the world."""
-        return self._origin_m
+    def in_world(self, point_m: complex) -> complex:
+        """A point of the plan."""
+        return self._origin_m + point_m * self._ahead
+
+    def _along(self, vector: complex) -> complex:
+        """A vector of the world in the axes of the plan."""
+        return vector * self._ahead.conjugate()
+
+    def _at(self, along_m: float, vector: complex) -> complex:
+        """A vector of the world with another part along the plan's x."""
+        return complex(along_m, self._along(vector).imag) * self._ahead
 
     def follow(self, plan: Plan | None, plan_at: PlanAt | None = None) -> None:
         """Take the newest plan; None while there is none.
 
         plan_at: the plan until the next tick, of which this wearer needs nothing.
         """
-        self._plan, self._plan_age_s = plan, 0.0
+        since_s, self._plan_age_s = self._plan_age_s, 0.0
+        self._plan = plan
         if plan is None or self.fallen:
             return
         self._started = True
+        self._face(plan, since_s)
         if plan.both_feet_stand:
             self._stand()
         if plan.both_feet_stand or plan.mode == STARTING:
@@ -337,13 +366,23 @@ class Wearer:
             self._since_landing_s = max(self._since_landing_s, 0.0)
         self._hold(plan)
 
+    def _face(self, plan: Plan, since_s: float) -> None:
+        """Feet and pelvis to the planned headings; since_s: since the plan before."""
+        for foot, yaw_rad in zip(self.feet, plan.yaw_rad, strict=True):
+            foot.yaw_rad = plan.heading_rad + yaw_rad
+        heading_rad = plan.heading_rad + plan.pelvis_yaw_rad
+        turned_rad = math.remainder(heading_rad - self._heading_rad, math.tau)
+        self._turn_rad_s = turned_rad / since_s if since_s > 0 else 0.0
+        self._heading_rad = heading_rad
+
     def _hold(self, plan: Plan) -> None:
         """The plan's frame against the foot that it steps on or, once that has landed, steps to."""
         stance, swing = plan.support, 1 - plan.support
         foot, place = (stance, plan.feet_m[stance])
         if self._since_landing_s <= 0 and self._leading == swing:
             foot, place = swing, plan.landing_m
-        self._origin_m = self.feet[foot].position_m - place
+        self._ahead = plan.ahead
+        self._origin_m = self.feet[foot].position_m - place * self._ahead
 
     @property
     def _is_first_swing(self) -> bool:
@@ -377,9 +416,7 @@ class Wearer:
             middle = (self.feet[LEFT].position_m + self.feet[RIGHT].position_m) / 2
             return Reference(middle, middle, (0.5, 0.5))
         planned = self._plan.reference(age)
-        return Reference(
-            self._origin_m + planned.cop_m, self._origin_m + planned.xcom_m, planned.load
-        )
+        return Reference(self.in_world(planned.cop_m), self.in_world(planned.xcom_m), planned.load)
 
     def _move_feet(self) -> None:
         plan = self._plan
@@ -404,27 +441,28 @@ class Wearer:
         True when a foot that hurries to a recovery step is there.
         """
         age = self._plan_age_s
-        rate = plan.swing_velocity_m_s
-        path = self._origin_m + plan.feet_m[side] + rate * age
-        planned = self._origin_m + plan.landing_m
-        shift = self._recovery_shift(plan, side)
+        rate = plan.swing_velocity_m_s * self._ahead
+        path = self.in_world(plan.feet_m[side]) + rate * age
+        planned = self.in_world(plan.landing_m)
+        shift = self._recovery_shift(plan, side) * self._ahead
         landing = planned + shift
         hurries = self._hurries and not self._is_first_swing
         self._turn_to(landing - path if hurries else shift)
         target = path + self._detour_m
-        if target.real > landing.real >= foot.position_m.real:
-            target, rate = complex(landing.real, target.imag), 1j * rate.imag
+        limit_m = self._along(landing).real
+        if self._along(target).real > limit_m >= self._along(foot.position_m).real:
+            target, rate = self._at(limit_m, target), self._at(0.0, rate)
         lag = self.body.foot_lag_s
         pull = (target - foot.position_m) / lag + 2 * (rate - foot.velocity_m_s)
         foot.velocity_m_s += pull * (STEP_S / lag)
-        if foot.position_m.real >= landing.real and foot.velocity_m_s.real > 0:
-            foot.velocity_m_s = 1j * foot.velocity_m_s.imag
+        if self._along(foot.position_m).real >= limit_m and self._along(foot.velocity_m_s).real > 0:
+            foot.velocity_m_s = self._at(0.0, foot.velocity_m_s)
         foot.position_m += foot.velocity_m_s * STEP_S
         foot.height_m = max(plan.foot_heights_m[side] + plan.swing_rise_m_s * age, 0.0)
         return hurries and abs(foot.position_m - landing) < ARRIVED_M
 
     def _recovery_shift(self, plan: Plan, side: int) -> complex:
-        """From the planned landing to the recovery step's, as far as the leg reaches.
+        """From the planned landing to the recovery step's, as far as the leg reaches; plan's axes.
 
         0 if that is near the planned landing. Once no place helps any more, the foot goes on to
         the last that would have.
@@ -472,7 +510,7 @@ class Wearer:
         if not plan.lands_beside:
             return False
         half_width_m = plan.half_width_m
-        lever_m = (self.xcom_m - self.feet[plan.support].position_m).imag
+        lever_m = self._along(self.xcom_m - self.feet[plan.support].position_m).imag
         inward_m = lever_m * math.copysign(1.0, half_width_m)
         edge_m = self.body.foot_half_width_m
         left_s = max(plan.landing_in_s - self._plan_age_s, 0.0)
@@ -496,8 +534,13 @@ class Wearer:
             apart = self.feet[1 - self._leading].position_m - middle
             along = ((cop - middle) * apart.conjugate()).real / (abs(apart) ** 2 or 1.0)
             middle += min(max(along, 0.0), share) * apart
-        sole = complex(self.body.foot_half_length_m, self.body.foot_half_width_m)
-        self.cop_m = middle + limited(cop - middle, sole)
+        self.cop_m = middle + self._within_sole(self.feet[self._leading], cop - middle)
+
+    def _within_sole(self, foot: Foot, offset_m: complex) -> complex:
+        """From the middle of a sole, in the world."""
+        sole_m = complex(self.body.foot_half_length_m, self.body.foot_half_width_m)
+        forward = cmath.rect(1.0, foot.yaw_rad)
+        return limited(offset_m * forward.conjugate(), sole_m) * forward
 
     def _move_com(self) -> None:
         """The pendulum's closed form over one step, and the pushes."""
@@ -507,7 +550,7 @@ class Wearer:
         self.velocity_m_s = lever * (w * self._sinh) + velocity * self._cosh
         for push in self.pushes:
             if 0 < self._steps - round(push.time_s / STEP_S) <= Push.STEPS:
-                impulse = push.vector_n_s / Push.STEPS
+                impulse = push.vector_n_s * cmath.rect(1.0, self.heading_rad) / Push.STEPS
                 self.velocity_m_s += impulse / self.body.mass_kg
                 self.pushed_n_s += impulse
 

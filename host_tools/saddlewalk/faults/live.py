@@ -63,13 +63,17 @@ class FaultyLcm:
         self._sender = wire.Sender()
 
     def publish(self, channel: str, data: bytes) -> None:
-        from saddlewalk.transport.lcm_types import command_t
+        from saddlewalk.transport.lcm_types import command_turn_t
 
-        if channel != "SADDLEWALK_COMMAND":
+        if channel != "SADDLEWALK_COMMAND_TURN":
             self._lcm.publish(channel, data)
             return
-        command = command_t.decode(data)
-        numbers = {"SPEED": command.speed_m_s, "HEEL_STRIKE": command.heel_strike_rad}
+        command = command_turn_t.decode(data)
+        numbers = {
+            "SPEED": command.speed_m_s,
+            "HEEL_STRIKE": command.heel_strike_rad,
+            "TURN_RATE": command.turn_rate_rad_s,
+        }
         self._line.send(self._sender.frame("COMMAND", MODE=command.mode, **numbers), self._now_s())
         for arrival in self._line.due(self._now_s()):
             if arrival.forged:  # UDP drops corrupted datagrams, and there is no other sender
@@ -77,6 +81,7 @@ class FaultyLcm:
             signals = wire.signals(arrival.frame)
             command.mode, command.speed_m_s = int(signals["MODE"]), signals["SPEED"]
             command.heel_strike_rad = signals["HEEL_STRIKE"]
+            command.turn_rate_rad_s = signals["TURN_RATE"]
             self._lcm.publish(channel, command.encode())
 
 

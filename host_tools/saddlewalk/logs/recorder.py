@@ -15,7 +15,7 @@ import lcm
 from saddlewalk import verdict
 from saddlewalk.contract import MODES
 from saddlewalk.emulation.exoskeleton import Observer, Tick
-from saddlewalk.emulation.wearer import Wearer
+from saddlewalk.emulation.wearer import Plan, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.logs.run_files import CAN_LOG, LCM_LOG, TABLE
 from saddlewalk.table import Cell, format_cell
@@ -43,6 +43,8 @@ COLUMNS = (
     + [f"true_{name}" for name in _POINTS]
     + "true_com_vx_m_s true_com_vy_m_s true_cop_x_m true_cop_y_m left_contact right_contact".split()
     + "pushed_x_n_s pushed_y_n_s fallen".split()
+    + "plan_left_yaw_rad plan_right_yaw_rad".split()
+    + "true_left_yaw_rad true_right_yaw_rad heading_rad".split()
 )
 
 _SCORES = "S_PEND S_JUMP S_SW MOS_COM MOS_XCOM V_COMP GRAVITY_X GRAVITY_Y".split()
@@ -107,7 +109,7 @@ def row(tick: Tick, wearer: Wearer) -> list[Cell]:
     left, right = wearer.feet
     return [
         tick.time_s,
-        *_planned(tick, wearer.origin_m),
+        *_planned(tick, wearer),
         *(scores[name] for name in _SCORES),
         *verdict.cells(scores),
         int(scores["PAPER_STABLE"]),
@@ -123,7 +125,13 @@ def row(tick: Tick, wearer: Wearer) -> list[Cell]:
         *(int(left.contact), int(right.contact)),
         *(wearer.pushed_n_s.real, wearer.pushed_n_s.imag),
         int(wearer.fallen),
+        *(_yaws(tick.plan) if tick.plan else (None, None)),
+        *(left.yaw_rad, right.yaw_rad, wearer.heading_rad),
     ]
+
+
+def _yaws(plan: Plan) -> list[Cell]:
+    return [plan.heading_rad + yaw_rad for yaw_rad in plan.yaw_rad]
 
 
 def _recovery(scores: Signals) -> list[Cell]:
@@ -136,11 +144,12 @@ def _recovery(scores: Signals) -> list[Cell]:
     ]
 
 
-def _planned(tick: Tick, origin_m: complex) -> list[Cell]:
+def _planned(tick: Tick, wearer: Wearer) -> list[Cell]:
     if tick.plan is None:
         return [None] * (COLUMNS.index("plan_speed_m_s"))
     step = tick.messages["PLAN_STEP"]
     points = [tick.messages[name] for name in ("PLAN_COM", "PLAN_LEFT", "PLAN_RIGHT")]
+    places = [wearer.in_world(complex(point["X"], point["Y"])) for point in points]
     return [
         MODES[tick.plan.mode],
         int(step["STEP_COUNT"]),
@@ -149,8 +158,8 @@ def _planned(tick: Tick, origin_m: complex) -> list[Cell]:
         "right" if step["SUPPORT"] else "left",
         *(
             value
-            for p in points
-            for value in (origin_m.real + p["X"], origin_m.imag + p["Y"], p["Z"])
+            for place, point in zip(places, points, strict=True)
+            for value in (place.real, place.imag, point["Z"])
         ),
         tick.plan.speed_m_s,
     ]

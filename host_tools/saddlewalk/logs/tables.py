@@ -29,7 +29,7 @@ from saddlewalk.transport.lcm_log import Event
 
 UNITS = tuple(f"_{unit}" for unit in "m_s n_s m rad s us n j kg".split())  # longest first
 AXES = ("x", "y", "z")
-BY_SIDE = {"foot_pitch_rad", "load"}  # pairs that are not of x and y
+BY_SIDE = {"foot_pitch_rad", "foot_yaw_rad", "load"}  # pairs that are not of x and y
 
 BLOCK = 8192  # rows of a table in memory
 COLUMNS_MAX = 1000  # of SADDLEWALK_CONFIG, whose columns are in the message

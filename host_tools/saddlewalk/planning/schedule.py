@@ -6,7 +6,7 @@ the walk turns, `turn_rad_s` (to the left): each row is commanded from its time 
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,17 +20,18 @@ FASTEST_TURN_RAD_S = 10.0
 _COLUMNS = (("t_s", "speed_m_s", "turn_rad_s"), ("t_s", "speed_m_s"))
 _SAME_TIME_S = 1e-9
 
-Speeds = list[tuple[float, float]]  # (start time, s, from 0; speed, m/s, 0: stand)
+# (start time, s, from 0; speed, m/s, 0: stand; turning rate, rad/s, if the walk turns)
+Speeds = Sequence[tuple[float, float] | tuple[float, float, float]]
 Schedule = Callable[[float], Command]  # the command at a time of the walk, s
 
 
 def schedule_of(speeds: Speeds, heel_strike_rad: float) -> Schedule:
     """The command at any time from 0 on."""
-    starts_s = [from_s for from_s, _ in speeds]
+    starts_s = [from_s for from_s, *_ in speeds]
 
     def at(time_s: float) -> Command:
-        index = bisect_right(starts_s, time_s + _SAME_TIME_S) - 1
-        return Command(speeds[index][1], heel_strike_rad)
+        _, speed_m_s, *turn_rad_s = speeds[bisect_right(starts_s, time_s + _SAME_TIME_S) - 1]
+        return Command(speed_m_s, heel_strike_rad, *turn_rad_s)
 
     return at
 
@@ -84,6 +85,19 @@ def read_schedule(source: str) -> list[SpeedChange]:
     if not changes:
         raise UserError(f"{source}: no rows: give at least 0 in t_s and a speed_m_s")
     return changes
+
+
+def check_straight(source: str, changes: list[SpeedChange], what: str) -> None:
+    """Raises UserError if the schedule turns, which `what` cannot."""
+    for wish in changes:
+        if wish.turn_rad_s:
+            raise UserError(
+                f"{source}: line {wish.line}, turn_rad_s: {wish.turn_rad_s:g} must be 0 with {what}"
+            )
+
+
+def speeds_of(changes: list[SpeedChange]) -> Speeds:
+    return [(wish.from_s, wish.speed_m_s, wish.turn_rad_s) for wish in changes]
 
 
 def walk(
