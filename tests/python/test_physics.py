@@ -132,6 +132,24 @@ def test_it_walks_is_pushed_and_recovers_and_a_seed_gives_the_same_bits():
 
 
 @needs_mujoco
+@pytest.mark.parametrize("turn_rad_s", [0.35, -0.35])
+def test_it_turns_with_its_feet_and_pelvis_on_the_way(turn_rad_s):
+    config, wearer = wearer_with(fields={"turn_acceleration_rad_s2": 0.5})
+    speeds = [(0.0, 0.0), (0.4, 0.7), (2.0, 0.7, turn_rad_s)]
+    tick = walked(config, wearer, speeds, 7.0)
+    plan = tick.plan
+    assert not wearer.fallen and abs(plan.heading_rad) > 1.0
+    planned = [plan.heading_rad + yaw for yaw in (plan.yaw_rad[plan.support], plan.pelvis_yaw_rad)]
+    forward = wearer.plant.data.body(wearer.plant.body.legs[plan.support].foot).xmat[[0, 3]]
+    stance_rad = math.atan2(forward[1], forward[0])
+    # Where a tick ago the plan had them, and the pelvis has turned on since.
+    assert stance_rad == pytest.approx(planned[0], abs=0.04)
+    assert wearer.heading_rad == pytest.approx(planned[1], abs=0.04 + abs(turn_rad_s) * TICK_S)
+    measured = wearer.exact().velocity_m_s
+    assert measured.real > 0.4 and abs(measured.imag) < 0.3
+
+
+@needs_mujoco
 def test_it_stops_and_stands():
     config, wearer = wearer_with()
     tick = walked(config, wearer, [(0.0, 0.0), (0.4, 0.8), (2.5, 0.0)], 7.0)
@@ -228,6 +246,40 @@ def test_endure_counts_falls_and_stands(tmp_path, capsys):
         assert group["speed_m_s"] == pytest.approx(group["asked_m_s"], abs=0.1)
     rows = list(csv.DictReader((out / "endurance.csv").open()))
     assert len(rows) == 4 and all(row["stands"] == "True" for row in rows)
+
+
+def test_endure_follows_a_schedule_with_turns(tmp_path, capsys):
+    schedule = tmp_path / "bend.csv"
+    schedule.write_text("t_s,speed_m_s,turn_rad_s\n0,0,0\n1,0.8,0\n3,0.8,0.3\n12,0,0\n")
+    out = tmp_path / "out"
+    options = ["--plant", "pendulum", "--repeats", "2", "--jobs", "1", "--out", str(out)]
+    assert main(["endure", *options, "--schedules", str(schedule)]) == 0
+    assert "0 falls, 2 stand at the end" in capsys.readouterr().out
+    (group,) = json.loads((out / "endurance.json").read_text())["groups"]
+    assert group["schedule"] == "bend" and group["stable_pct"] == 100
+    assert group["speed_m_s"] == pytest.approx(
+        0.8, abs=0.02
+    )  # along the way, not as the crow flies
+    assert group["distance_m"] / 2 == pytest.approx(0.8 * 11, rel=0.06)
+
+
+def schedule_file(tmp_path, rows: str) -> str:
+    path = tmp_path / "schedule.csv"
+    path.write_text(f"t_s,speed_m_s,turn_rad_s\n{rows}\n")
+    return str(path)
+
+
+@needs_mujoco
+@pytest.mark.parametrize(
+    ("rows", "options", "words"),
+    [
+        ("0,0.8,0", [], "line 2, speed_m_s: the last one must be 0, a stop"),
+        ("0,0.8,0.2\n5,0,0", ["--drive", "joints"], "line 2, turn_rad_s: 0.2 must be 0 with --dri"),
+    ],
+)
+def test_a_schedule_that_endure_cannot_follow_is_named(rows, options, words, tmp_path, capsys):
+    assert main(["endure", "--schedules", schedule_file(tmp_path, rows), *options]) == 2
+    assert words in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

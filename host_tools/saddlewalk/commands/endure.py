@@ -23,17 +23,18 @@ from saddlewalk.options import (
     whole_number_in,
     workers_of,
 )
-from saddlewalk.outputs import OutputFolder, add_output
+from saddlewalk.outputs import OutputFolder, add_input, add_output
 from saddlewalk.printable import printable
 from saddlewalk.progress import progress_bar
 
 if TYPE_CHECKING:
     from saddlewalk.evaluation.endurance import Course, Outcome
     from saddlewalk.physics.plants import PlantChoice
+    from saddlewalk.planning.schedule import Speeds
 
 SPEEDS_M_S = (0.3, 0.6, 0.8, 1.0, 1.2, 1.4, 1.6)
 DISTANCE_M, REPEATS = 15.0, 5
-FILE_WIDTH = 132
+FILE_WIDTH = 140
 FILES = ("endurance.json", "endurance.csv")
 
 
@@ -62,12 +63,19 @@ def add_parser(subparsers: Any) -> None:
         metavar="N",
         help="instead stop N walks, by turns at the speeds, at N phases of their steps",
     )
+    add_input(
+        how,
+        "--schedules",
+        nargs="+",
+        metavar="FILE",
+        help="instead follow these schedules, as of plan --schedule, which end with a speed of 0",
+    )
     parser.add_argument(
         "--repeats",
         type=whole_number_in(1, 10_000),
         default=REPEATS,
         metavar="N",
-        help=f"seeds at each speed (default {REPEATS})",
+        help=f"seeds at each speed or schedule (default {REPEATS})",
     )
     parser.add_argument(
         "--heights",
@@ -167,7 +175,12 @@ def _delays(args: argparse.Namespace, what: str) -> list[float]:
 
 
 def _courses(args: argparse.Namespace, config: Any) -> list["Course"]:
-    from saddlewalk.evaluation.endurance import Course, over_distance, stopped_anywhere
+    from saddlewalk.evaluation.endurance import (
+        Course,
+        by_schedule,
+        over_distance,
+        stopped_anywhere,
+    )
 
     bases = [
         Course(0.0, height_m, args.seed, 0.0, sensor_s, torque_s)
@@ -177,6 +190,14 @@ def _courses(args: argparse.Namespace, config: Any) -> list["Course"]:
     ]
     if args.stops:
         return [each for base in bases for each in stopped_anywhere(args.stops, args.speeds, base)]
+    if args.schedules:
+        schedules = [(Path(file).stem, _speeds_of(args, file)) for file in args.schedules]
+        return [
+            each
+            for base in bases
+            for name, speeds in schedules
+            for each in by_schedule(name, speeds, args.repeats, base)
+        ]
     return [
         each
         for base in bases
@@ -184,8 +205,21 @@ def _courses(args: argparse.Namespace, config: Any) -> list["Course"]:
     ]
 
 
-COLUMNS: dict[str, Callable[[dict[str, float]], str]] = {
-    "m/s": lambda row: f"{row['asked_m_s']:g}",
+def _speeds_of(args: argparse.Namespace, file: str) -> "Speeds":
+    """Of a schedule that ends with a stop."""
+    from saddlewalk.planning.schedule import check_straight, read_schedule, speeds_of
+
+    changes = read_schedule(file)
+    last = changes[-1]
+    if last.speed_m_s != 0:
+        raise UserError(f"{file}: line {last.line}, speed_m_s: the last one must be 0, a stop")
+    if args.drive == JOINTS:
+        check_straight(file, changes, f"--drive {JOINTS}")
+    return speeds_of(changes)
+
+
+COLUMNS: dict[str, Callable[[dict[str, Any]], str]] = {
+    "m/s": lambda row: row["schedule"] or f"{row['asked_m_s']:g}",
     "height m": lambda row: f"{row['height_m']:.2f}",
     "delays ms": lambda row: f"{1e3 * row['sensor_delay_s']:g}, {1e3 * row['torque_delay_s']:g}",
     "walks": lambda row: f"{row['walks']}",
@@ -200,7 +234,7 @@ COLUMNS: dict[str, Callable[[dict[str, float]], str]] = {
 }
 
 
-def _table(groups: list[dict[str, float]], title: str) -> Any:
+def _table(groups: list[dict[str, Any]], title: str) -> Any:
     from rich.table import Table
 
     table = Table(title=title, title_justify="left")
@@ -226,7 +260,7 @@ def _number(value: float, digits: int) -> str:
     return f"{value:.{digits}f}" if math.isfinite(value) else "-"
 
 
-def _write(folder: Path, groups: list[dict[str, float]], outcomes: list["Outcome"]) -> None:
+def _write(folder: Path, groups: list[dict[str, Any]], outcomes: list["Outcome"]) -> None:
     from saddlewalk.atomic_write import atomic_folder
     from saddlewalk.table import write_table
 

@@ -1,8 +1,10 @@
 """Walks from standing to standing without a push: whether they end standing, and how they went.
 
-Everything follows from a seed. A walk covers a distance, or is stopped at some phase of its step.
+Everything follows from a seed. A walk covers a distance, is stopped at some phase of its step, or
+follows a schedule.
 """
 
+import cmath
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -15,7 +17,7 @@ from saddlewalk.contract import LEVELS, STANDING, TICK_S
 from saddlewalk.core import ffi
 from saddlewalk.emulation import closed_loop
 from saddlewalk.physics.plants import PlantChoice
-from saddlewalk.planning.schedule import schedule_of
+from saddlewalk.planning.schedule import Speeds, schedule_of
 from saddlewalk.table import Cell
 from saddlewalk.workers import Workers, run_tasks
 
@@ -36,16 +38,19 @@ FIGURES = (
 class Course:
     """Parameters of a walk."""
 
-    speed_m_s: float
+    speed_m_s: float  # from START_S to stop_s, without a schedule
     height_m: float
     seed: int
     stop_s: float
     sensor_delay_s: float = 0.0
     torque_delay_s: float = 0.0
+    schedule: str = ""  # its name
+    speeds: Speeds = ()  # and what it says; it stands from stop_s on
 
     @property
-    def group(self) -> tuple[float, ...]:
-        return self.speed_m_s, self.height_m, self.sensor_delay_s, self.torque_delay_s
+    def group(self) -> tuple[float | str, ...]:
+        own = self.speed_m_s, self.height_m, self.sensor_delay_s, self.torque_delay_s
+        return self.schedule, *own
 
 
 @dataclass(frozen=True)
@@ -70,6 +75,7 @@ class Outcome:
     def row(self) -> dict[str, Cell]:
         own = {k: value for k, value in asdict(self).items() if k not in ("ticks", "peaks")}
         course = own.pop("course")
+        del course["speeds"]
         asked = {f"asked_{name}": value for name, value in course.items()}
         peaks = {
             f"{joint}_{unit}": peak
@@ -103,6 +109,12 @@ def stopped_anywhere(stops: int, speeds_m_s: Sequence[float], base: Course) -> l
     ]
 
 
+def by_schedule(name: str, speeds: Speeds, repeats: int, base: Course) -> list[Course]:
+    """speeds: they end with a stop."""
+    own = replace(base, schedule=name, speeds=speeds, stop_s=speeds[-1][0])
+    return [replace(own, seed=base.seed + repeat) for repeat in range(repeats)]
+
+
 def endure(
     courses: Sequence[Course],
     plant: PlantChoice,
@@ -128,26 +140,31 @@ def walked(course: Course, plant: PlantChoice, config: Any) -> Outcome:
         plant, sensor_delay_s=course.sensor_delay_s, torque_delay_s=course.torque_delay_s
     )
     wearer = plant.wearer(config, seed=course.seed)
-    speeds = [(0.0, 0.0), (START_S, course.speed_m_s), (course.stop_s, 0.0)]
-    schedule = schedule_of(speeds, HEEL_STRIKE_RAD)
+    straight = [(0.0, 0.0), (START_S, course.speed_m_s), (course.stop_s, 0.0)]
+    schedule = schedule_of(course.speeds or straight, HEEL_STRIKE_RAD)
     levels: Counter[str] = Counter()
     places, errors, mode = [], [], STANDING
+    walked_m, before_m = 0.0, wearer.com_m
     for tick in closed_loop.walk(config, wearer, schedule):
         if wearer.fallen or tick.time_s > course.stop_s + STOPPING_S:
             break
         mode = tick.plan.mode
+        to_plan = cmath.rect(1.0, -tick.plan.heading_rad - tick.plan.pelvis_yaw_rad)
+        walked_m += ((wearer.com_m - before_m) * to_plan).real
+        before_m = wearer.com_m
         if tick.time_s >= START_S:
             levels[LEVELS[tick.output.verdict.level]] += 1
         if START_S + SETTLED_S <= tick.time_s <= course.stop_s:
-            places.append(wearer.com_m.real)
-            errors.append((wearer.xcom_error_m.real, wearer.xcom_error_m.imag))
+            places.append(walked_m)
+            error_m = wearer.xcom_error_m * to_plan
+            errors.append((error_m.real, error_m.imag))
     deviation = np.std(errors, axis=0) if errors else (math.nan, math.nan)
     passed_s = (len(places) - 1) * TICK_S
     return Outcome(
         course=course,
         fell_at_s=wearer.fell_at_s,
         stands=mode == STANDING and abs(wearer.velocity_m_s) < STILL_M_S and not wearer.fallen,
-        distance_m=wearer.com_m.real,
+        distance_m=walked_m,
         speed_m_s=(places[-1] - places[0]) / passed_s if len(places) > 1 else math.nan,
         xcom_sd_x_m=float(deviation[0]),
         xcom_sd_y_m=float(deviation[1]),
@@ -157,14 +174,15 @@ def walked(course: Course, plant: PlantChoice, config: Any) -> Outcome:
     )
 
 
-def grouped(outcomes: Sequence[Outcome]) -> Iterator[dict[str, float]]:
-    """Figures of the walks of each speed, height and delay, in their order."""
-    groups: dict[tuple[float, ...], list[Outcome]] = {}
+def grouped(outcomes: Sequence[Outcome]) -> Iterator[dict[str, Any]]:
+    """Figures of the walks of each speed or schedule, height and delay, in their order."""
+    groups: dict[tuple[float | str, ...], list[Outcome]] = {}
     for outcome in outcomes:
         groups.setdefault(outcome.course.group, []).append(outcome)
     for group in groups.values():
         asked = group[0].course
         yield {
+            "schedule": asked.schedule,
             "asked_m_s": asked.speed_m_s,
             "height_m": asked.height_m,
             "sensor_delay_s": asked.sensor_delay_s,

@@ -114,7 +114,7 @@ def winter(height_m: float, mass_kg: float) -> Body:
     legs = tuple(_add_leg(pelvis, name, height_m, mass_kg) for name in SIDES)
     torques = {f"{side}_{name}": torque for side in SIDES for name, (*_, torque) in JOINTS.items()}
     model = compiled(spec, torques)
-    return Body("winter", model, "pelvis", (legs[0], legs[1]), 1.0, 0.030, 60.0)
+    return Body("winter", model, "pelvis", (legs[0], legs[1]), 1.0, 0.040, 60.0)
 
 
 def _add_leg(pelvis: Any, side: str, height_m: float, mass_kg: float) -> Leg:

@@ -30,11 +30,20 @@ class Contact(Enum):
 
 
 @dataclass(frozen=True)
+class Yaw:
+    """In the world."""
+
+    rad: float = 0.0
+    rad_s: float = 0.0
+
+
+@dataclass(frozen=True)
 class FootTarget:
-    """Where a foot is to be; of a loaded one only pitch and load count, it stays where it is."""
+    """Where a foot is to be. A loaded one stays where it is: only its angles and load count."""
 
     contact: Contact
     pitch_rad: float = 0.0
+    yaw: Yaw = Yaw()
     load_max_n: float = UNLIMITED
     position_m: np.ndarray | None = None  # of the sole's middle
     velocity_m_s: np.ndarray | None = None
@@ -45,6 +54,7 @@ class FootTarget:
 class Targets:
     com_acceleration_m_s2: np.ndarray  # (3,)
     feet: tuple[FootTarget, FootTarget]
+    pelvis: Yaw = Yaw()
 
 
 class InverseDynamics:
@@ -68,7 +78,7 @@ class InverseDynamics:
         mujoco.mj_fullM(self._model, data, self._inertia)
         bias = data.qfrc_bias - data.qfrc_passive
         self._add_com(tasks, bias, targets.com_acceleration_m_s2)
-        self._add_upright(tasks, data)
+        self._add_upright(tasks, data, targets.pelvis)
         for side, foot in enumerate(targets.feet):
             if foot.contact is Contact.AIR:
                 self._add_swing(tasks, data, side, foot)
@@ -85,12 +95,13 @@ class InverseDynamics:
         weights = (self._gains.com_weight, self._gains.com_weight, self._gains.height_weight)
         tasks.add(jacobian, wanted - drift, weights)
 
-    def _add_upright(self, tasks: "_Tasks", data: Any) -> None:
+    def _add_upright(self, tasks: "_Tasks", data: Any, yaw: Yaw) -> None:
         gains = self._gains
         _, turning = self._jacobians(data, data.xpos[self._pelvis], self._pelvis)
         _, drift = self._drifts(data, data.xpos[self._pelvis], self._pelvis)
-        error = _rotation_to(data.xquat[self._pelvis], 0.0)
+        error = _rotation_to(data.xquat[self._pelvis], 0.0, yaw.rad)
         wanted = gains.upright_stiffness * error - gains.upright_damping * (turning @ data.qvel)
+        wanted[2] += gains.upright_damping * yaw.rad_s
         tasks.add(turning, wanted - drift, (gains.upright_weight,) * 3)
 
     def _add_swing(self, tasks: "_Tasks", data: Any, side: int, foot: FootTarget) -> None:
@@ -119,12 +130,15 @@ class InverseDynamics:
         level = self._levelling(data, side, foot, turning)
         pitch_weight = gains.heel_off_weight if on_toe else gains.stance_weight
         weights = (gains.stance_weight, pitch_weight, gains.stance_weight)
-        tasks.add(turning, level - turning_drift, weights)
+        to_foot = _yaw_matrix(-foot.yaw.rad)
+        tasks.add(to_foot @ turning, to_foot @ (level - turning_drift), weights)
 
     def _levelling(self, data: Any, side: int, foot: FootTarget, turning: np.ndarray) -> np.ndarray:
-        error = _rotation_to(data.xquat[self._feet[side]], foot.pitch_rad)
+        error = _rotation_to(data.xquat[self._feet[side]], foot.pitch_rad, foot.yaw.rad)
         gains = self._gains
-        return gains.sole_stiffness * error - gains.sole_damping * (turning @ data.qvel)
+        level = gains.sole_stiffness * error - gains.sole_damping * (turning @ data.qvel)
+        level[2] += gains.sole_damping * foot.yaw.rad_s
+        return np.asarray(level)
 
     def _corners(self, data: Any, side: int, contact: Contact) -> list[np.ndarray]:
         """Jacobians of the corners that may carry."""
@@ -277,11 +291,19 @@ class _Programme:
         return solver.result.x, solved
 
 
-def _rotation_to(quaternion: np.ndarray, pitch_rad: float) -> np.ndarray:
-    """The rotation vector, in the world, from an orientation to a level one with that pitch."""
-    wanted = np.array([math.cos(pitch_rad / 2), 0.0, math.sin(pitch_rad / 2), 0.0])
+def _rotation_to(quaternion: np.ndarray, pitch_rad: float, yaw_rad: float) -> np.ndarray:
+    """The rotation vector, in the world, from an orientation to a level one with that pitch, which
+    is then turned to that yaw."""
+    pitch = math.cos(pitch_rad / 2), math.sin(pitch_rad / 2)
+    yaw = math.cos(yaw_rad / 2), math.sin(yaw_rad / 2)
+    wanted = np.array([yaw[0] * pitch[0], -yaw[1] * pitch[1], yaw[0] * pitch[1], yaw[1] * pitch[0]])
     inverse, turn, error = np.zeros(4), np.zeros(4), np.zeros(3)
     mujoco.mju_negQuat(inverse, quaternion)
     mujoco.mju_mulQuat(turn, wanted, inverse)
     mujoco.mju_quat2Vel(error, turn, 1.0)
     return error
+
+
+def _yaw_matrix(yaw_rad: float) -> np.ndarray:
+    cosine, sine = math.cos(yaw_rad), math.sin(yaw_rad)
+    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])

@@ -47,8 +47,14 @@ class Plant:
 
     def sole_pitch_rad(self, side: int) -> float:
         """Positive: heel up."""
-        rotation = self.data.xmat[self._feet[side]].reshape(3, 3)
-        return math.atan2(-rotation[2, 0], rotation[0, 0])
+        forward = self.data.xmat[self._feet[side]].reshape(3, 3)[:, 0]
+        return math.atan2(-forward[2], math.hypot(forward[0], forward[1]))
+
+    @property
+    def pelvis_yaw_rad(self) -> float:
+        """In the world."""
+        forward = self.data.xmat[self._pelvis].reshape(3, 3)[:, 0]
+        return math.atan2(forward[1], forward[0])
 
     def sole_rise_m(self, side: int) -> float:
         """Of the middle of the sole over its lower end."""

@@ -4,6 +4,8 @@ Where to step, when, and what each foot carries is the plan's; but a foot has la
 carries, and the CoM moves as the joint torques make it.
 """
 
+import cmath
+import math
 from collections import deque
 from dataclasses import replace
 from typing import Any
@@ -14,7 +16,7 @@ from saddlewalk.contract import GRAVITY_M_S2, LEFT, RIGHT
 from saddlewalk.emulation import wearer as emulation
 from saddlewalk.emulation.wearer import STEP_S, Measurement, Noise, Plan, PlanAt, Push
 from saddlewalk.physics.gains import Gains
-from saddlewalk.physics.inverse_dynamics import Contact, FootTarget, InverseDynamics, Targets
+from saddlewalk.physics.inverse_dynamics import Contact, FootTarget, InverseDynamics, Targets, Yaw
 from saddlewalk.physics.plant import Plant
 from saddlewalk.physics.poses import Pose
 from saddlewalk.physics.swing import PlannedSwing, Swing
@@ -62,6 +64,7 @@ class PhysicalWearer(emulation.Wearer):
         self._swings: list[Swing | None] = [None, None]  # also of a foot that still reaches down
         self._landed_early: int | None = None  # the swing foot that stands before the plan says so
         self._light_s = [0.0, 0.0]
+        self._yaws_rad = [0.0, 0.0, 0.0]  # wanted last, of the feet and the pelvis
         self._sense()
         self._height_m, self._height_m_s = self.height_m, 0.0  # the filtered reference
         self._seen = deque([self._exact_now()], maxlen=1 + round(sensor_delay_s / CONTROL_S))
@@ -77,15 +80,21 @@ class PhysicalWearer(emulation.Wearer):
     def peaks(self) -> dict[str, tuple[float, float, float]]:
         return self.plant.peaks_of_joints()
 
+    @property
+    def heading_rad(self) -> float:
+        """Of the pelvis."""
+        return self.plant.pelvis_yaw_rad
+
     def exact(self) -> Measurement:
         """What sensors without noise give, with their delay."""
         return self._seen[0]
 
     def _exact_now(self) -> Measurement:
-        left, right = (foot.position_m - self.com_m for foot in self.feet)
+        to_pelvis = cmath.rect(1.0, -self.heading_rad)
+        left, right = ((foot.position_m - self.com_m) * to_pelvis for foot in self.feet)
         loads_n = self.plant.loads_n
         contact = (loads_n[LEFT] > CONTACT_N, loads_n[RIGHT] > CONTACT_N)
-        return Measurement(self.height_m, self.velocity_m_s, (left, right), contact)
+        return Measurement(self.height_m, self.velocity_m_s * to_pelvis, (left, right), contact)
 
     def follow(self, plan: Plan | None, plan_at: PlanAt | None = None) -> None:
         self._plan = self._tick_plan = plan
@@ -120,7 +129,7 @@ class PhysicalWearer(emulation.Wearer):
         force_n = 0j
         for push in self.pushes:
             if 0 < self._steps - round(push.time_s / STEP_S) <= Push.STEPS:
-                impulse = push.vector_n_s / Push.STEPS
+                impulse = push.vector_n_s * cmath.rect(1.0, self.heading_rad) / Push.STEPS
                 self.pushed_n_s += impulse
                 force_n += impulse / STEP_S
         return force_n
@@ -168,7 +177,10 @@ class PhysicalWearer(emulation.Wearer):
             foot, place = plan.support, plan.feet_m[plan.support]
         else:
             foot, place = self._landed_early, plan.landing_m
-        self._origin_m = self.feet[foot].position_m - place
+        self._ahead = plan.ahead
+        self._origin_m = self.feet[foot].position_m - place * self._ahead
+        for side in SIDES:
+            self.feet[side].yaw_rad = plan.heading_rad + plan.yaw_rad[side]
 
     def _balance(self) -> None:
         """The CoP that is wanted: the reference's and more by the XCoM's error, within the feet."""
@@ -184,8 +196,7 @@ class PhysicalWearer(emulation.Wearer):
             apart_m = self.feet[other].position_m - middle_m
             along = ((cop_m - middle_m) * apart_m.conjugate()).real / abs(apart_m) ** 2
             middle_m += min(max(along, 0.0), share) * apart_m
-        sole_m = complex(self.body.foot_half_length_m, self.body.foot_half_width_m)
-        self.cop_m = middle_m + emulation.limited(cop_m - middle_m, sole_m)
+        self.cop_m = middle_m + self._within_sole(self.feet[stance], cop_m - middle_m)
 
     def _share(self, side: int) -> float:
         """The most of the weight that a foot may carry which the plan does not step on."""
@@ -257,8 +268,8 @@ class PhysicalWearer(emulation.Wearer):
         swing = self._swings[side]
         if swing is None or self.feet[side].contact:
             return
-        rate = plan.swing_velocity_m_s
-        place = self._origin_m + plan.feet_m[side] + rate * age_s
+        rate = plan.swing_velocity_m_s * self._ahead
+        place = self.in_world(plan.feet_m[side]) + rate * age_s
         height_m = plan.foot_heights_m[side] + plan.swing_rise_m_s * age_s
         height_m += min(self.plant.sole_rise_m(side), self.gains.sole_rise_max_m)
         planned = PlannedSwing(
@@ -272,7 +283,7 @@ class PhysicalWearer(emulation.Wearer):
         """The recovery step where the walk is in need of one, else in proportion to the error."""
         if not self.takes_recovery_step:
             return 0j
-        recovery = self._recovery_shift(plan, side)
+        recovery = self._recovery_shift(plan, side) * self._ahead
         return recovery if self._hurries else self.gains.step_gain * self.xcom_error_m
 
     # -- targets of the programme -----------------------------------------------------------------
@@ -287,18 +298,31 @@ class PhysicalWearer(emulation.Wearer):
         self._height_m += self._height_m_s * CONTROL_S
         rise = gains.height_stiffness * (self._height_m - self.height_m)
         rise += gains.height_damping * (self._height_m_s - self.rise_m_s)
-        feet = (self._foot_target(LEFT), self._foot_target(RIGHT))
-        return Targets(np.array([level.real, level.imag, rise]), feet)
+        left, right, pelvis = self._yaws()
+        feet = (self._foot_target(LEFT, left), self._foot_target(RIGHT, right))
+        return Targets(np.array([level.real, level.imag, rise]), feet, pelvis)
 
-    def _foot_target(self, side: int) -> FootTarget:
+    def _yaws(self) -> list[Yaw]:
+        """Of the feet and the pelvis, as planned."""
+        before_rad, plan = self._yaws_rad, self._plan
+        if plan is None:
+            return [Yaw(rad) for rad in before_rad]
+        self._yaws_rad = [plan.heading_rad + yaw for yaw in (*plan.yaw_rad, plan.pelvis_yaw_rad)]
+        return [
+            Yaw(now, math.remainder(now - before, math.tau) / CONTROL_S)
+            for now, before in zip(self._yaws_rad, before_rad, strict=True)
+        ]
+
+    def _foot_target(self, side: int, yaw: Yaw) -> FootTarget:
         foot, swing, plan = self.feet[side], self._swings[side], self._plan
         if swing is not None and foot.contact:
-            return self._reach_down(side, swing)
+            return self._reach_down(side, swing, yaw)
         if swing is not None and plan is not None:
             swing.turn_sole(plan.pitch_rad[side], CONTROL_S)
             return FootTarget(
                 Contact.AIR,
                 pitch_rad=swing.pitch_rad,
+                yaw=yaw,
                 position_m=swing.position_m,
                 velocity_m_s=swing.velocity_m_s,
                 acceleration_m_s2=swing.acceleration_m_s2,
@@ -306,8 +330,8 @@ class PhysicalWearer(emulation.Wearer):
         if plan is not None and self._trails(plan, side):
             share = max(self._share(side), self.gains.trailing_share_min)
             load_max_n = share * self.gains.trailing_reserve * self._weight_n
-            return FootTarget(Contact.TOE, plan.pitch_rad[side], load_max_n)
-        return FootTarget(Contact.SOLE)
+            return FootTarget(Contact.TOE, plan.pitch_rad[side], yaw, load_max_n)
+        return FootTarget(Contact.SOLE, yaw=yaw)
 
     def _trails(self, plan: Plan, side: int) -> bool:
         """Hands its load over to a foot that has landed."""
@@ -316,12 +340,13 @@ class PhysicalWearer(emulation.Wearer):
         leading = plan.support if self._landed_early is None else self._landed_early
         return side != leading
 
-    def _reach_down(self, side: int, swing: Swing) -> FootTarget:
+    def _reach_down(self, side: int, swing: Swing, yaw: Yaw) -> FootTarget:
         position_m = swing.position_m.copy()
         position_m[2] = self.plant.sole_m(side)[2] - self.gains.reach_down_m
         down_m_s = np.array([0.0, 0.0, -self.gains.reach_down_m_s])
         return FootTarget(
             Contact.AIR,
+            yaw=yaw,
             position_m=position_m,
             velocity_m_s=down_m_s,
             acceleration_m_s2=np.zeros(3),
