@@ -45,6 +45,18 @@ def pushed(tmp_path_factory) -> Path:
     return folder
 
 
+@pytest.fixture(scope="module")
+def turned(tmp_path_factory) -> Path:
+    """The folder of a walk that turns to the left by more than a quarter."""
+    folder = tmp_path_factory.mktemp("turned")
+    schedule = folder / "schedule.csv"
+    schedule.write_text("t_s,speed_m_s,turn_rad_s\n0,0,0\n1,0.8,0\n4,0.8,0.35\n11,0,0\n")
+    options = ["--can", private_udp(), "--lcm", own_lcm(), "--clock", "lockstep"]
+    options += ["--schedule", str(schedule), "--duration", "15", "--push", "6@8:90"]
+    assert main(["demo", *options, "--out", str(folder / "walk")]) == 0
+    return folder / "walk"
+
+
 def rows_of(path: Path) -> dict[str, np.ndarray]:
     reader = Rows()
     rows = [reader.feed(event.channel, event.data) for event in LcmLog(path)]
@@ -80,6 +92,29 @@ def test_rows_place_the_body_and_the_plan_where_the_wearer_is(walk):
         # Noise of 2 mm, in the foot as it was first measured. The wearer holds the plan to a foot
         # that lands early, the picture to the stance foot of the plan: some ticks more.
         assert both.sum() > 100 and np.quantile(differ, 0.95) < 0.01 and differ.max() < 0.1
+
+
+def test_rows_place_the_body_on_a_way_that_bends(turned):
+    rows = rows_of(turned / "walk.lcmlog")
+    assert rows["heading_rad"][-1] > 1.6
+    for name in ("com_x_m", "com_y_m", "left_x_m", "right_y_m"):
+        offset = rows[name] - table_of(turned, f"true_{name}")
+        assert np.ptp(offset[np.isfinite(offset)]) < 0.06  # a noise of 2 mm at each of 20 landings
+    for name in ("left_yaw_rad", "right_yaw_rad"):
+        assert np.allclose(rows[name], table_of(turned, f"true_{name}"), atol=1e-4)  # CAN's steps
+    forward = rows["com_vx_m_s"][75:130]  # the CoM's waves are across it
+    assert forward.mean() == pytest.approx(0.8, abs=0.05)
+    walked_m = np.hypot(np.diff(rows["com_x_m"]), np.diff(rows["com_y_m"])).sum()
+    assert 0.9 * walked_m < rows["walked_m"][-1] - rows["walked_m"][0] < walked_m
+    landing = rows["landing_yaw_rad"] - rows["heading_rad"]
+    assert 0.1 < np.nanmax(landing[60:130]) < 0.4
+
+
+def test_rows_have_a_push_to_the_left_of_the_heading(turned):
+    rows = rows_of(turned / "walk.lcmlog")
+    heading_rad = rows["heading_rad"][101]
+    push_n_s = rows["truth.push_x_n_s"].sum(), rows["truth.push_y_n_s"].sum()
+    assert push_n_s == pytest.approx((-6 * np.sin(heading_rad), 6 * np.cos(heading_rad)), abs=0.2)
 
 
 def test_rows_have_the_pendulum_to_balance_by(walk):
@@ -134,10 +169,14 @@ def test_live_ticks_keep_the_newest():
     assert np.frombuffer(ticks.block(7000, 7002), np.float32).tolist() == [7000] * 3 + [7001] * 3
 
 
-GOOD = [{"push": [3, -4.5]}, {"speed": 1.2}, {"speed": 0}, {"speed": None}, {"end": True}]
+GOOD = [
+    *({"push": [3, -4.5]}, {"speed": 1.2}, {"speed": 0}, {"speed": None}),
+    *({"turn": -0.3}, {"turn": 0}, {"turn": None}, {"end": True}),
+]
 BAD = [
     *({"push": value} for value in ([0, 0], [1e3, 0], [1], ["1", 2], [math.nan, 1], 5, None)),
     *({"speed": value} for value in (-1, 99, True, "1", math.inf)),
+    *({"turn": value} for value in (-1.1, 2, True, "1", math.nan)),
     *({"end": 1}, {}, {"halt": True}, {"speed": 1, "end": True}),
 ]
 
@@ -285,6 +324,9 @@ def test_a_live_walk_takes_pushes_and_speeds_from_the_page(browser, tmp_path, ow
             page.mouse.move(box["x"] + com[0], box["y"] + com[1] - 30, steps=3)
             page.mouse.up()
             page.wait_for_timeout(1500)
+            page.click("[data-turn='0.3']")
+            until(page, "element('health').innerText.includes('by this page')")
+            until(page, "above.heading > 0.05")
             page.click("#stop")
             until(page, "element('health').innerText.includes('by this page')")
             page.wait_for_timeout(600)
@@ -296,6 +338,7 @@ def test_a_live_walk_takes_pushes_and_speeds_from_the_page(browser, tmp_path, ow
     log = tmp_path / "walk.lcmlog"
     push = np.sum([message.push_n_s for message in logged(log, "TRUTH")], axis=0)
     assert push[1] > 3 and abs(push[0]) < push[1]  # to the left, as the mouse was dragged
+    assert max(message.turn_rate_rad_s for message in logged(log, "TURN")) == pytest.approx(0.3)
     inputs = logged(log, "INPUT")
     assert inputs[-1].mode == lcm_types.input_t.MODE_STAND
     assert abs(len(inputs) - ticks) <= 3

@@ -1,10 +1,11 @@
 """What the page shows of each tick: a row of numbers from the tick's LCM messages.
 
 A number that is not known is NaN. Positions are of one world: x forward from the start, y to the
-left, metres. The world is found from the measured feet alone, so it is the same for an emulated
-wearer, a recording and a machine.
+left, metres. The world is found from the measured feet alone and the planned heading of the pelvis,
+in whose axes they are, so it is the same for an emulated wearer, a recording and a machine.
 """
 
+import cmath
 import math
 from array import array
 from collections.abc import Iterable, Sequence
@@ -14,10 +15,11 @@ from saddlewalk.config import ANKLES, configuration
 from saddlewalk.contract import LEFT, RIGHT, STANDING, STARTING
 from saddlewalk.core import bos_polygon, defined, field_ranges
 from saddlewalk.logs.messages import kinds
+from saddlewalk.planning.ground import on_arc
 from saddlewalk.status_text import DROPPED, REJECTED
 
 VERTICES = int(defined("SADDLE_BOS_VERTICES"))
-FIRMWARE = tuple("config input plan scores verdict balance bos status health".split())
+FIRMWARE = tuple("config input plan scores verdict balance bos way status health".split())
 LAST = "health"  # of a tick's messages
 
 _TAKEN: dict[str, tuple[str, ...]] = {  # as they are
@@ -54,6 +56,7 @@ NAMES: tuple[str, ...] = (
     *(f"{side}_{part}" for side in ("left", "right") for part in ("x_m", "y_m", "contact")),
     *(f"plan_{point}_{axis}_m" for point in _POINTS for axis in "xyz"),
     *("plan_left_pitch_rad", "plan_right_pitch_rad", "landing_x_m", "landing_y_m"),
+    *("heading_rad", "left_yaw_rad", "right_yaw_rad", "landing_yaw_rad", "walked_m"),
     *("recovery_x_m", "recovery_y_m"),
     *(f"reference_{point}_{axis}_m" for point in _REFERENCE for axis in "xy"),
     *(
@@ -138,6 +141,7 @@ class Rows:
         scores, verdict = messages.get("scores"), messages.get("verdict")
         status = messages.get("status")
         world = self._world
+        world.turn(messages.get("way"))
         world.measure(inputs, time_s)
         world.plan(plan)
         push_n_s, self._push_n_s = self._push_n_s, 0j
@@ -152,13 +156,14 @@ class Rows:
             *(_total(status, REJECTED.values()), _total(status, DROPPED.values())),
             *(self._fallen, push_n_s.real, push_n_s.imag),
             *(world.com_m.real, world.com_m.imag, *_measured_com(inputs)),
-            *_parts(world.com_m + _complex(scores, "xcom_m")),
+            *_parts(world.com_m + _complex(scores, "xcom_m") * world.forward),
             *_foot(world, inputs, LEFT),
             *_foot(world, inputs, RIGHT),
             *(value for point in _POINTS for value in world.planned(plan, f"{point}_m")),
             *(plan.foot_pitch_rad if plan else (_UNKNOWN, _UNKNOWN)),
             *_parts(world.landing(plan)),
-            *_parts(_recovery(world, verdict)),
+            *(world.heading_rad, *world.yaws_rad, world.landing_yaw_rad(plan), world.walked_m),
+            *_parts(_recovery(world, verdict, plan)),
             *(part for point in _REFERENCE for part in _parts(world.reference(plan, point))),
             *_skeleton(world, self._skeleton),
             *_bos(world, messages.get("bos")),
@@ -171,12 +176,10 @@ class Rows:
         landing, stance = self._world.landing(plan), self._world.stance(plan)
         if self.config is None or not _finite(landing) or not _finite(stance):
             return _NO_POLYGON
-        step = landing - stance
+        forward = self._world.forward
+        step = (landing - stance) / forward
         vertices = bos_polygon(self.config, [(0.0, 0.0), (step.real, step.imag)])
-        return [
-            *(stance.real + x_m for x_m, _ in vertices),
-            *(stance.imag + y_m for _, y_m in vertices),
-        ]
+        return _outline(stance + complex(*vertex) * forward for vertex in vertices)
 
 
 class World:
@@ -184,14 +187,33 @@ class World:
 
     def __init__(self) -> None:
         self.com_m = _NOWHERE
+        self.walked_m = _UNKNOWN  # by the CoM, in its heading
+        self.heading_rad = 0.0  # of the pelvis
+        self.forward = 1 + 0j
+        self.yaws_rad = [0.0, 0.0]  # planned, of the feet
+        self._origin_m = 0j  # of the plan's axes, from where the way began, and their direction
+        self._ahead = 1 + 0j
+        self._curvature_1_m = (0.0, 0.0)
         self.feet_m = [_NOWHERE, _NOWHERE]
         self._contact = [False, False]
         self._time_s = _UNKNOWN
         self._plan_m = _NOWHERE  # origin of the plan's frame
 
+    def turn(self, way: Any) -> None:
+        """To the headings of a tick; firmware without a way goes straight on."""
+        if way is None or not all(map(math.isfinite, _numbers(way))):
+            return
+        self.heading_rad = math.remainder(way.heading_rad + way.pelvis_yaw_rad, math.tau)
+        self.forward = cmath.rect(1.0, self.heading_rad)
+        self.yaws_rad = [way.heading_rad + yaw_rad for yaw_rad in way.foot_yaw_rad]
+        self._origin_m = 1j * way.origin_y_m
+        self._ahead = cmath.rect(1.0, way.heading_rad)
+        self._curvature_1_m = way.curvature_1_m
+
     def measure(self, inputs: Any, time_s: float) -> None:
         """Move to what was measured at a tick."""
-        relative = [_complex(inputs, f"{side}_m") for side in ("left", "right")]
+        before_m = self.com_m
+        relative = [_complex(inputs, f"{side}_m") * self.forward for side in ("left", "right")]
         contact = [
             bool(_member(inputs, f"{side}_contact") == 1) and _finite(foot)
             for side, foot in zip(("left", "right"), relative, strict=True)
@@ -204,7 +226,7 @@ class World:
         if held:
             self.com_m = sum(held) / len(held)
         elif _finite(self.com_m):
-            self.com_m += _moved(inputs, time_s - self._time_s)
+            self.com_m += _moved(inputs, time_s - self._time_s) * self.forward
         elif all(map(_finite, relative)):
             self.com_m = -(relative[LEFT] + relative[RIGHT]) / 2
         self.feet_m = [
@@ -212,11 +234,19 @@ class World:
             for side in (LEFT, RIGHT)
         ]
         self._contact, self._time_s = contact, time_s
+        if _finite(before_m):
+            self.walked_m += ((self.com_m - before_m) / self.forward).real
+        else:
+            self.walked_m = self.com_m.real
 
     def plan(self, plan: Any) -> None:
         """Attach the plan's frame to the measured stance foot."""
         if plan and plan.valid and self._contact[_support(plan)]:
-            self._plan_m = self.feet_m[_support(plan)] - _walked(plan, _planned_stance(plan))
+            self._plan_m = self.feet_m[_support(plan)] - self._walked(plan, _planned_stance(plan))
+
+    def _walked(self, plan: Any, point_m: complex) -> complex:
+        """A point of the plan's axes, whose origin moves on with the stance foot."""
+        return self._origin_m + plan.origin_x_m + point_m * self._ahead
 
     def stance(self, plan: Any) -> complex:
         """The stance foot, as measured."""
@@ -227,14 +257,14 @@ class World:
         if not plan or not plan.valid or plan.mode == STANDING:
             return (_UNKNOWN, _UNKNOWN, _UNKNOWN)
         x_m, y_m, z_m = getattr(plan, name)
-        point = self._plan_m + _walked(plan, complex(x_m, y_m))
+        point = self._plan_m + self._walked(plan, complex(x_m, y_m))
         return (point.real, point.imag, z_m)
 
     def reference(self, plan: Any, point: str) -> complex:
         """CoM, XCoM or CoP of the pendulum to balance by."""
         if not plan or not plan.valid:
             return _NOWHERE
-        return self._plan_m + _walked(plan, _complex(plan, f"reference_{point}_m"))
+        return self._plan_m + self._walked(plan, _complex(plan, f"reference_{point}_m"))
 
     def landing(self, plan: Any) -> complex:
         """Where the swing foot is planned to land."""
@@ -242,12 +272,28 @@ class World:
             return _NOWHERE
         if plan.mode == STARTING and plan.speed_m_s == 0:  # the weight is being shifted
             return _NOWHERE
-        return self._plan_m + _walked(plan, complex(*plan.landing_m))
+        return self._plan_m + self._walked(plan, complex(*plan.landing_m))
+
+    def landing_yaw_rad(self, plan: Any) -> float:
+        """Of the foot that lands there."""
+        if not _finite(self.landing(plan)):
+            return _UNKNOWN
+        return cmath.phase(self._ahead) + self._curvature_1_m[1] * plan.landing_m[0]
+
+    def from_stance(self, plan: Any, place_m: complex) -> complex:
+        """A place along and across the way, from the stance foot, as a vector of the world."""
+        if not plan or not plan.valid:
+            return place_m * self._ahead
+        stance_m = _planned_stance(plan)
+        if not _finite(place_m + stance_m):
+            return _NOWHERE
+        curvature_1_m = self._curvature_1_m[place_m.real >= 0]
+        return (on_arc(curvature_1_m, place_m + stance_m) - stance_m) * self._ahead
 
 
-def _walked(plan: Any, point_m: complex) -> complex:
-    """A point of the plan's frame, whose origin moves on with the stance foot."""
-    return point_m + plan.origin_x_m
+def _numbers(way: Any) -> tuple[float, ...]:
+    single = way.origin_y_m, way.heading_rad, way.pelvis_yaw_rad
+    return *single, *way.foot_yaw_rad, *way.curvature_1_m
 
 
 def _support(plan: Any) -> int:
@@ -265,30 +311,38 @@ def _moved(inputs: Any, time_s: float) -> complex:
     return moved if _finite(moved) else 0j
 
 
-def _recovery(world: World, verdict: Any) -> complex:
+def _recovery(world: World, verdict: Any, plan: Any) -> complex:
     if not verdict or not verdict.recovery_found:
         return _NOWHERE
     other = LEFT if verdict.recovery_foot == verdict.RIGHT else RIGHT
-    return world.feet_m[other] + complex(*verdict.recovery_landing_m)
+    landing_m = world.from_stance(plan, complex(*verdict.recovery_landing_m))
+    return world.feet_m[other] + landing_m
 
 
 def _skeleton(world: World, skeleton: Any) -> list[float]:
-    """Joints forward and up, and the trunk's direction."""
+    """Joints along the walked way and up, and the trunk's direction."""
     if not skeleton:
         return [_UNKNOWN] * (4 * len(_JOINTS) + 2)
-    ahead_m = world.com_m.real
+
+    def ahead(point: Sequence[float]) -> float:
+        return float((complex(*point[:2]) / world.forward).real)
+
     joints = [getattr(skeleton, f"{joint}_m")[side] for joint in _JOINTS for side in (LEFT, RIGHT)]
-    places = [part for x_m, _, z_m in joints for part in (ahead_m + x_m, z_m)]
-    return [*places, skeleton.trunk_up[0], skeleton.trunk_up[2]]
+    places = [part for point in joints for part in (world.walked_m + ahead(point), point[2])]
+    return [*places, ahead(skeleton.trunk_up), skeleton.trunk_up[2]]
 
 
 def _bos(world: World, bos: Any) -> Sequence[float]:
     if not bos or not bos.defined:
         return _NO_POLYGON
-    return [
-        *(world.com_m.real + x_m for x_m in bos.x_m),
-        *(world.com_m.imag + y_m for y_m in bos.y_m),
-    ]
+    vertices = map(complex, bos.x_m, bos.y_m)
+    return _outline(world.com_m + vertex * world.forward for vertex in vertices)
+
+
+def _outline(points_m: Iterable[complex]) -> list[float]:
+    """In the order of _polygon_names()."""
+    points = list(points_m)
+    return [*(point.real for point in points), *(point.imag for point in points)]
 
 
 def _foot(world: World, inputs: Any, side: int) -> tuple[float, float, float]:

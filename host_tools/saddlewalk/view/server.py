@@ -36,6 +36,7 @@ HISTORY_TICKS = 7500  # that a live page can go back: 10 minutes
 CLOSE_S = 1.0  # that a page has to say goodbye
 PUSH_MAX_N_S = 100.0
 SPEED_MAX_M_S = 3.0
+TURN_MAX_RAD_S = 1.0
 
 Control = Callable[[dict[str, Any]], None]
 
@@ -219,7 +220,10 @@ def _wanted(ticks: Ticks, wanted: Any) -> bytes | None:
 
 
 def _is_control(asked: dict[str, Any]) -> bool:
-    """One of {"push": [x, y] in N s}, {"speed": m/s, or null for the schedule's}, {"end": true}."""
+    """{"push": [x, y] in N s}, {"end": true}, {"speed": m/s} or {"turn": rad/s}.
+
+    Speed or turn null: the schedule's.
+    """
     if len(asked) != 1:
         return False
     ((name, value),) = asked.items()
@@ -232,6 +236,8 @@ def _is_control(asked: dict[str, Any]) -> bool:
         )
     if name == "speed":
         return value is None or (_is_number(value) and 0 <= value <= SPEED_MAX_M_S)
+    if name == "turn":
+        return value is None or (_is_number(value) and abs(value) <= TURN_MAX_RAD_S)
     return name == "end" and value is True
 
 

@@ -222,7 +222,13 @@ element("speed").oninput = element("strength").oninput = showChoices;
 showChoices();
 element("walk").onclick = () => send({ speed: Number(element("speed").value) });
 element("stop").onclick = () => send({ speed: 0 });
-element("schedule").onclick = () => send({ speed: null });
+element("schedule").onclick = () => {
+  send({ speed: null });
+  send({ turn: null });
+};
+for (const button of document.querySelectorAll("[data-turn]")) {
+  button.onclick = () => send({ turn: Number(button.dataset.turn) });
+}
 element("end").onclick = () => send({ end: true });
 for (const button of document.querySelectorAll("[data-push]")) {
   const direction = button.dataset.push.split(",").map(Number);
@@ -248,7 +254,7 @@ element("above").addEventListener("pointermove", (event) => {
 });
 element("above").addEventListener("pointerup", (event) => {
   if (!above.drag) return;
-  const push = impulseOf(fromCom(event));
+  const push = impulseOf(fromCom(event), above.heading);
   above.drag = null;
   state.dirty = true;
   if (Math.hypot(...push) >= 1) send({ push });

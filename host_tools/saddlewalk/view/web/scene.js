@@ -15,8 +15,8 @@ function polygon(read, name, vertices) {
   return Array.from({ length: vertices }, (_, i) => [read(`${name}_x_m.${i}`), read(`${name}_y_m.${i}`)]);
 }
 
-// Outline of a foot about its CoP.
-function sole(x, y, side) {
+// Outline of a foot about its CoP; yaw: its heading.
+function sole(x, y, side, yaw = 0) {
   const points = [];
   const inward = side === "left" ? -1 : 1;
   for (let i = 0; i < 24; i++) {
@@ -24,7 +24,11 @@ function sole(x, y, side) {
     const forward = Math.cos(angle);
     const wide = 1 - 0.22 * (forward < 0 ? -forward : 0);
     const lean = forward > 0 ? 0.008 * inward * forward : 0;
-    points.push([x + (FOOT.length / 2) * forward, y + lean + (FOOT.width / 2) * wide * Math.sin(angle)]);
+    const [along, across] = [(FOOT.length / 2) * forward, lean + (FOOT.width / 2) * wide * Math.sin(angle)];
+    points.push([
+      x + along * Math.cos(yaw) - across * Math.sin(yaw),
+      y + along * Math.sin(yaw) + across * Math.cos(yaw),
+    ]);
   }
   return points;
 }
@@ -62,8 +66,11 @@ class Above {
     const com = { x: read("com_x_m"), y: read("com_y_m") };
     const seen = Number.isFinite(com.x) ? com : { x: 0, y: 0 };
     this.com = com;
-    if (Math.abs(seen.y - this.y) > 0.25) this.y = seen.y - Math.sign(seen.y - this.y) * 0.25;
-    board.begin(seen.x + 0.12 * wide, this.y, wide);
+    this.heading = read("heading_rad");
+    const lead = { x: 0.12 * wide * Math.cos(this.heading), y: 0.12 * wide * Math.sin(this.heading) };
+    const y = seen.y + lead.y;
+    if (Math.abs(y - this.y) > 0.25) this.y = y - Math.sign(y - this.y) * 0.25;
+    board.begin(seen.x + lead.x, this.y, wide);
     grid(board, 0.5, true);
     this.past(ticks, tick);
     board.area(polygon(read, "bos", hello.vertices), "rgba(86,180,233,.28)");
@@ -98,11 +105,11 @@ class Above {
       for (const side of SIDES) {
         if (read(`${side}_contact`) !== 1) continue;
         const [x, y] = [read(`${side}_x_m`), read(`${side}_y_m`)];
-        stood.set(`${side}${x.toFixed(1)}${y.toFixed(1)}`, [x, y, side]);
+        stood.set(`${side}${x.toFixed(1)}${y.toFixed(1)}`, [x, y, side, read(`${side}_yaw_rad`)]);
       }
     }
-    for (const [x, y, side] of stood.values()) {
-      this.board.area(sole(x, y, side), side === "left" ? "rgba(0,158,115,.16)" : "rgba(213,94,0,.16)");
+    for (const [x, y, side, yaw] of stood.values()) {
+      this.board.area(sole(x, y, side, yaw), side === "left" ? "rgba(0,158,115,.16)" : "rgba(213,94,0,.16)");
     }
     this.board.line(xcoms, COLOURS.pink, 1.2, [2, 4]);
     this.board.line(coms, COLOURS.blue, 2.2);
@@ -111,7 +118,7 @@ class Above {
   foot(read, side) {
     const [x, y] = [read(`${side}_x_m`), read(`${side}_y_m`)];
     if (!Number.isFinite(x)) return;
-    const outline = sole(x, y, side);
+    const outline = sole(x, y, side, read(`${side}_yaw_rad`));
     if (read(`${side}_contact`) === 1) this.board.area(outline, COLOURS[side]);
     this.board.line(outline, COLOURS[side], 2, [], true);
     this.board.text(side === "left" ? "L" : "R", x, y, read(`${side}_contact`) === 1 ? COLOURS.ink : COLOURS[side], "center", 5);
@@ -121,10 +128,11 @@ class Above {
   steps(read) {
     const landing = [read("landing_x_m"), read("landing_y_m")];
     const swing = SIDES[1 - read("plan.support")] || "left";
-    if (Number.isFinite(landing[0])) this.board.line(sole(...landing, swing), COLOURS.ink, 1.5, [5, 4], true);
+    const yaw = read("landing_yaw_rad");
+    if (Number.isFinite(landing[0])) this.board.line(sole(...landing, swing, yaw), COLOURS.ink, 1.5, [5, 4], true);
     if (!recoveryStands(read)) return;
     const place = [read("recovery_x_m"), read("recovery_y_m")];
-    const outline = sole(...place, SIDES[read("verdict.recovery_foot")]);
+    const outline = sole(...place, SIDES[read("verdict.recovery_foot")], Number.isFinite(yaw) ? yaw : this.heading);
     this.board.area(outline, "rgba(230,159,0,.45)");
     this.board.line(outline, COLOURS.orange, 3, [], true);
     this.board.text("recovery step", place[0], place[1], COLOURS.ink, "center", 34);
@@ -149,15 +157,27 @@ class Above {
 
   dragged() {
     if (!this.drag) return;
-    const [x, y] = impulseOf(this.drag);
+    const [x, y] = impulseOf(this.drag, this.heading);
     this.board.arrow(this.com.x, this.com.y, this.com.x + this.drag.x, this.com.y + this.drag.y, COLOURS.pink);
     this.board.text(`${Math.hypot(x, y).toFixed(1)} N·s`, this.com.x + this.drag.x, this.com.y + this.drag.y, COLOURS.ink, "center", -12);
   }
 }
 
-// The push of a dragged arrow, in N s, forward and to the left.
-function impulseOf(drag) {
-  return [drag.x * N_S_PER_METRE, drag.y * N_S_PER_METRE];
+// The push of a dragged arrow, in N s, forward and to the left in that heading.
+function impulseOf(drag, heading) {
+  const [c, s] = [Math.cos(heading), Math.sin(heading)];
+  return [(drag.x * c + drag.y * s) * N_S_PER_METRE, (drag.y * c - drag.x * s) * N_S_PER_METRE];
+}
+
+// Places as seen from the side of the walked way: x along it, in the heading of the pelvis.
+function alongTheWay(ticks, read) {
+  const [c, s] = [Math.cos(read("heading_rad")), Math.sin(read("heading_rad"))];
+  return (name) => {
+    const across = name.replace(/_x_m$/, "_y_m");
+    if (across === name || !ticks.column.has(across)) return read(name);
+    const [dx, dy] = [read(name) - read("com_x_m"), read(across) - read("com_y_m")];
+    return read("walked_m") + dx * c + dy * s;
+  };
 }
 
 // There is a recovery step, and it is not the planned one.
@@ -185,8 +205,9 @@ class Side {
   }
 
   draw(ticks, tick, hello) {
-    const read = between(ticks, tick);
-    if (!read) return;
+    const inWorld = between(ticks, tick);
+    if (!inWorld) return;
+    const read = alongTheWay(ticks, inWorld);
     const board = this.board;
     const height = hello.body_height_m || 1.75;
     const tall = height * 1.12;

@@ -90,7 +90,7 @@ function between(ticks, tick) {
     const column = ticks.column.get(name);
     const a = before[column];
     const b = after[column];
-    const moves = /^(com|xcom|left|right|plan|reference)_.*_(m|rad)$/.test(name);
+    const moves = /^(com|xcom|left|right|plan|reference|heading|walked)_(.*_)?(m|rad)$/.test(name);
     return moves && Math.abs(b - a) < 0.6 ? a + (b - a) * share : a;
   };
 }
