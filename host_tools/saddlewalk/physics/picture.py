@@ -27,7 +27,9 @@ def draw_strip(csv_path: Path, png_path: Path, wearer: PhysicalWearer, config: A
     shown = pictures.shown(walk["t_s"], wearer.pushes, fell_s)
     closely = {name: column[shown] for name, column in walk.items()}
     from_s, to_s = closely["t_s"][[0, -1]]
-    poses = [pose for pose in wearer.poses or () if from_s <= pose.time_s <= to_s]
+    seen_rad = pictures.heading_of(closely)
+    closely = pictures.seen_in(seen_rad, closely)
+    poses = [pose.seen_in(seen_rad) for pose in wearer.poses or () if from_s <= pose.time_s <= to_s]
     figure = Figure(figsize=(13, 10), dpi=110, layout="constrained")
     above_m = np.ptp(pictures.lateral_limits(closely))
     ratios = (np.ptp(HEIGHTS_M), above_m, BALANCE_SHARE, LEVEL_SHARE)

@@ -1,5 +1,6 @@
 """The body as it is drawn: its shapes in a pose, in the world."""
 
+import cmath
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,6 +18,15 @@ ROUND = [math.pi * k / 12 for k in range(13)]  # of a cap or, twice, of a sphere
 class Pose:
     time_s: float
     qpos: np.ndarray
+
+    def seen_in(self, heading_rad: float) -> "Pose":
+        """In axes of that heading, about the same origin."""
+        to_heading = cmath.rect(1.0, -heading_rad)
+        qpos, place = self.qpos.copy(), complex(*self.qpos[:2]) * to_heading
+        qpos[:2] = place.real, place.imag
+        turn = np.array([math.cos(heading_rad / 2), 0.0, 0.0, -math.sin(heading_rad / 2)])
+        mujoco.mju_mulQuat(qpos[3:7], turn, self.qpos[3:7])
+        return Pose(self.time_s, qpos)
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
-"""The picture of a walk by a schedule: its speed, its steps from above, the height of its CoM."""
+"""The picture of a walk by a schedule: speed, steps from above, height of the CoM, turning rate."""
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby, pairwise
 from pathlib import Path
@@ -12,6 +13,7 @@ from matplotlib.patches import Ellipse
 from saddlewalk.atomic_write import atomic_file
 from saddlewalk.contract import MODES
 from saddlewalk.pictures.walk import BLUE, FEET, FOOT_M, ORANGE, PINK, SKY
+from saddlewalk.planning.ground import place_of, yaws_of
 from saddlewalk.planning.schedule import Instant, SpeedChange
 
 MODE_COLOURS = {"standing": "0.6", "starting": PINK, "walking": SKY, "stopping": ORANGE}
@@ -21,26 +23,37 @@ LATERAL_M = 0.26  # shown to each side
 
 def draw_schedule(path: str, changes: Sequence[SpeedChange], walked: Sequence[Instant]) -> None:
     """Draw to a file whose suffix names the format; PNG without a suffix."""
-    figure = Figure(figsize=(12, 8), dpi=100, layout="constrained")
-    speed, above, height = figure.subplots(3, 1, height_ratios=(1, 1.25, 1))
     time_s = np.array([instant.t_s for instant in walked])
     com_m = np.array([_com_m(instant) for instant in walked])
+    turns = any(instant.output.plan.heading_rad != 0 for instant in walked)
+    ratios = (1.0, _height(com_m), 1.0, 1.0) if turns else (1.0, 1.25, 1.0)
+    figure = Figure(figsize=(12, 2.5 * sum(ratios)), dpi=100, layout="constrained")
+    speed, above, height, *turning = figure.subplots(len(ratios), 1, height_ratios=ratios)
     figure.suptitle("A planned walk: start, change of speed, stop")
     _draw_speed(speed, changes, walked, time_s)
-    _draw_above(above, walked, com_m)
+    _draw_above(above, walked, com_m, turns)
     height.plot(time_s, com_m[:, 2], color=BLUE, lw=1.6)
     height.set(ylabel="height of\nthe CoM (m)", xlabel="time (s)")
-    for axes in (speed, height):
+    for axes in turning:
+        _draw_turning(axes, changes, walked, time_s)
+    for axes in (speed, height, *turning):
         _shade(axes, walked, time_s)
-    _shade(above, walked, com_m[:, 0])
+    if not turns:
+        _shade(above, walked, com_m[:, 0])
     _label_modes(speed, walked, time_s)
     with atomic_file("--picture", path, "wb") as file:
         figure.savefig(file, format=Path(path).suffix.lower().removeprefix(".") or "png")
 
 
+def _height(com_m: np.ndarray) -> float:
+    """Of a view from above that is to scale: of the figure's shares."""
+    along_m, across_m = np.ptp(com_m[:, :2], axis=0) + 0.5
+    return float(min(max(1.0, 4.3 * across_m / along_m), 4.0))
+
+
 def _com_m(instant: Instant) -> tuple[float, float, float]:
     plan = instant.output.plan
-    return plan.origin_x_nm * 1e-9 + plan.com_m.x, plan.com_m.y, plan.com_m.z
+    return *place_of(plan, plan.com_m), plan.com_m.z
 
 
 def _draw_speed(
@@ -63,27 +76,45 @@ def _draw_speed(
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
-def _draw_above(axes: Axes, walked: Sequence[Instant], com_m: np.ndarray) -> None:
-    """Not to scale: the walk is long and narrow."""
-    for index, (name, colour) in enumerate(FEET):
-        for place in _footholds_m(walked, index):
-            axes.add_patch(Ellipse(place, *FOOT_M, color=colour, alpha=0.55, lw=0))
-        axes.plot([], [], "o", color=colour, alpha=0.55, ms=9, label=f"{name} foot")
-    axes.plot(com_m[:, 0], com_m[:, 1], color=BLUE, lw=1.8, label="CoM")
-    axes.set(
-        xlabel="forward (m)", ylabel="to the left (m),\nenlarged", ylim=(-LATERAL_M, LATERAL_M)
-    )
+def _draw_turning(
+    axes: Axes, changes: Sequence[SpeedChange], walked: Sequence[Instant], time_s: np.ndarray
+) -> None:
+    starts_s = [wish.from_s for wish in changes] + [max(time_s[-1], changes[-1].from_s)]
+    rates = [wish.turn_rad_s for wish in changes]
+    axes.stairs(rates, starts_s, baseline=None, color="black", ls="--", label="wanted")
+    plans = [instant.output.plan for instant in walked]
+    planned = [plan.curvature_1_m[1] * plan.speed_m_s for plan in plans]
+    axes.plot(time_s, planned, color=BLUE, lw=2, label="planned")
+    axes.set(ylabel="turning rate,\nto the left (rad/s)", xlabel="time (s)")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
-def _footholds_m(walked: Sequence[Instant], index: int) -> set[tuple[float, float]]:
-    """Footholds, rounded to a millimetre."""
+def _draw_above(axes: Axes, walked: Sequence[Instant], com_m: np.ndarray, turns: bool) -> None:
+    """A walk straight on is long and narrow, and not to scale."""
+    for index, (name, colour) in enumerate(FEET):
+        for x_m, y_m, yaw_rad in _footholds(walked, index):
+            angle = math.degrees(yaw_rad)
+            foot = Ellipse((x_m, y_m), *FOOT_M, angle=angle, color=colour, alpha=0.55, lw=0)
+            axes.add_patch(foot)
+        axes.plot([], [], "o", color=colour, alpha=0.55, ms=9, label=f"{name} foot")
+    axes.plot(com_m[:, 0], com_m[:, 1], color=BLUE, lw=1.8, label="CoM")
+    axes.set(xlabel="forward (m)", ylabel="to the left (m)" + ("" if turns else ",\nenlarged"))
+    if turns:
+        axes.set_aspect("equal")
+        axes.grid(alpha=0.25)
+    else:
+        axes.set_ylim(-LATERAL_M, LATERAL_M)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+
+
+def _footholds(walked: Sequence[Instant], index: int) -> set[tuple[float, ...]]:
+    """Places and headings of the feet that stand, rounded to millimetres and mrad."""
     places = set()
     for instant in walked:
         plan = instant.output.plan
         if plan.step_length_m == 0 or plan.support == index:
-            foot = plan.foot_m[index]
-            places.add((round(plan.origin_x_nm * 1e-9 + foot.x, 3), round(foot.y, 3)))
+            foot = (*place_of(plan, plan.foot_m[index]), yaws_of(plan)[index])
+            places.add(tuple(round(number, 3) for number in foot))
     return places
 
 

@@ -1,6 +1,11 @@
-"""The picture of a recorded walk: from above, whole and in detail; speed, height, scores, level."""
+"""The picture of a recorded walk: from above, whole and in detail; speed, height, scores, level.
 
+The detail is seen in the heading that the walk has in its middle.
+"""
+
+import cmath
 import csv
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -23,6 +28,7 @@ BLUE, SKY, GREEN, ORANGE, RED, PINK = "#0072B2 #56B4E9 #009E73 #E69F00 #D55E00 #
 BEFORE_S, AFTER_S = 1.2, 3.0  # the part shown in detail, around the first push
 LYING_S = 0.5  # shown after a fall
 FOOT_M = (0.26, 0.09)
+BODY = ("com", "left", "right")
 MARGIN_SHOWN_M = -0.8  # during a fall it goes far below
 FEET = (("left", GREEN), ("right", RED))
 MARGINS = (
@@ -65,6 +71,23 @@ def read_walk(path: Path) -> Columns:
     return columns | {"driver": np.array([row["driver"] for row in rows])}
 
 
+def seen_in(heading_rad: float, walk: Columns) -> Columns:
+    """The walk in axes of that heading, about the same origin."""
+    turned = dict(walk)
+    to_heading = cmath.rect(1.0, -heading_rad)
+    for point in (f"{whose}_{part}" for whose in ("plan", "true") for part in BODY):
+        x, y = f"{point}_x_m", f"{point}_y_m"
+        places = (walk[x] + 1j * walk[y]) * to_heading
+        turned |= {x: places.real, y: places.imag}
+    yaws = [name for name in walk if name.endswith("_yaw_rad") or name == "heading_rad"]
+    return turned | {name: walk[name] - heading_rad for name in yaws}
+
+
+def heading_of(walk: Columns) -> float:
+    """In the middle."""
+    return float(walk["heading_rad"][len(walk["t_s"]) // 2])
+
+
 def until_fall(walk: Columns, fell_s: float | None) -> Columns:
     """The walk without numbers that have no meaning after a fall."""
     if fell_s is None:
@@ -88,25 +111,28 @@ def figure_of(
     walk: Columns, pushes: Sequence[Push], config: Any, fell_s: float | None = None
 ) -> Figure:
     walk = until_fall(walk, fell_s)
-    figure = Figure(figsize=(13, 15), dpi=110, layout="constrained")
-    balance, level, whole, above, speed, height, scores, margins = figure.subplots(
-        8, 1, height_ratios=(1.0, 0.6, 0.6, 1.7, 0.8, 0.8, 0.9, 0.9)
-    )
     there = shown(walk["t_s"], pushes, fell_s)
     closely = {name: column[there] for name, column in walk.items()}
+    seen_rad = heading_of(closely)
+    closely = seen_in(seen_rad, closely)
+    ratios = (1.0, 0.6, _height(walk, 0.6), _height(closely, 1.7), 0.8, 0.8, 0.9, 0.9)
+    figure = Figure(figsize=(13, 15 / 7.3 * sum(ratios)), dpi=110, layout="constrained")
+    balance, level, whole, above, speed, height, scores, margins = figure.subplots(
+        8, 1, height_ratios=ratios
+    )
     fate = "" if fell_s is None else f" and falls at {fell_s:.2f} s"
     figure.suptitle(f"A walk: the plan, and the wearer who follows it{fate}")
     draw_balance(balance, walk["t_s"], walk["margin"], walk["caution_below"])
     _name_lowest(balance, walk)
     draw_level(level, walk)
     mark(level, pushes, fell_s)
-    _draw_whole(whole, walk, closely)
+    _draw_whole(whole, walk, there)
     draw_above(above, closely, pushes, config)
     if fell_s is not None:
-        _draw_fall((whole, above), walk)
-    _draw_lines(
-        speed, walk, (("true_com_vx_m_s", "true"), ("plan_speed_m_s", "planned")), modes=True
-    )
+        _draw_fall(whole, walk)
+        _draw_fall(above, seen_in(seen_rad, walk))
+    walk |= {"forward_m_s": _forward_m_s(walk)}
+    _draw_lines(speed, walk, (("forward_m_s", "true"), ("plan_speed_m_s", "planned")), modes=True)
     speed.set(ylabel="speed (m/s)")
     _draw_height(height, closely)
     _draw_lines(scores, walk, (("s_pend", "S_pend"), ("s_jump", "S_jump"), ("s_sw", "S_SW")))
@@ -120,19 +146,37 @@ def figure_of(
     return figure
 
 
+def _height(walk: Columns, least: float) -> float:
+    """Of a view from above, in which a metre is as long across as along: of the figure's shares."""
+    return min(max(least, 5.0 * np.ptp(lateral_limits(walk)) / np.ptp(_forward_limits(walk))), 4.0)
+
+
+def _forward_limits(walk: Columns) -> tuple[float, float]:
+    return walk["true_com_x_m"].min() - 0.3, walk["true_com_x_m"].max() + 0.3
+
+
+def _forward_m_s(walk: Columns) -> np.ndarray:
+    """Speed in the wearer's heading."""
+    heading_rad = walk["heading_rad"]
+    velocity = walk["true_com_vx_m_s"], walk["true_com_vy_m_s"]
+    return velocity[0] * np.cos(heading_rad) + velocity[1] * np.sin(heading_rad)
+
+
 def _footprint(colour: str) -> dict[str, Any]:
     return {"color": colour, "alpha": 0.55, "lw": 0}
 
 
-def _draw_whole(axes: Axes, walk: Columns, closely: Columns) -> None:
+def _draw_whole(axes: Axes, walk: Columns, there: np.ndarray) -> None:
     """The whole walk from above, with the part that is shown in detail marked."""
     for side, colour in FEET:
         _draw_stood(axes, walk, "true", side, walk[f"{side}_contact"] > 0, _footprint(colour))
-    axes.plot(walk["true_com_x_m"], walk["true_com_y_m"], color=BLUE, lw=1.2)
-    axes.axvspan(*closely["true_com_x_m"][[0, -1]], color="0.92", zorder=0)
+    com_m = walk["true_com_x_m"], walk["true_com_y_m"]
+    axes.plot(*com_m, color=BLUE, lw=1.2)
+    marker: dict[str, Any] = {"color": "0.9", "solid_capstyle": "butt", "zorder": 0}
+    axes.plot(*(column[there] for column in com_m), lw=30, **marker)
     axes.set_aspect("equal")
     axes.set(ylabel="to the left (m)")
-    axes.set_xlim(walk["true_com_x_m"].min() - 0.3, walk["true_com_x_m"].max() + 0.3)
+    axes.set_xlim(*_forward_limits(walk))
     axes.set_ylim(*lateral_limits(walk))
 
 
@@ -168,11 +212,14 @@ def draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], config: Any) -
 
 
 def _bos(walk: Columns, index: int, config: Any) -> np.ndarray:
-    """Base of support of the true feet, from the C core."""
-    cops_m = [
-        (walk[f"true_{side}_x_m"][index], walk[f"true_{side}_y_m"][index]) for side, _ in FEET
+    """Base of support of the true feet, from the C core, in the wearer's heading."""
+    ahead = cmath.rect(1.0, walk["heading_rad"][index])
+    cops = [
+        complex(walk[f"true_{side}_x_m"][index], walk[f"true_{side}_y_m"][index]) / ahead
+        for side, _ in FEET
     ]
-    return np.array(bos_polygon(config, cops_m))
+    vertices = [complex(*v) * ahead for v in bos_polygon(config, [(c.real, c.imag) for c in cops])]
+    return np.array([(vertex.real, vertex.imag) for vertex in vertices])
 
 
 def _draw_feet(axes: Axes, walk: Columns, planned: np.ndarray, side: str, colour: str) -> None:
@@ -186,24 +233,25 @@ def _draw_feet(axes: Axes, walk: Columns, planned: np.ndarray, side: str, colour
 def _draw_stood(
     axes: Axes, walk: Columns, whose: str, side: str, there: np.ndarray, style: dict[str, Any]
 ) -> None:
-    places = np.column_stack([walk[f"{whose}_{side}_x_m"], walk[f"{whose}_{side}_y_m"]])
-    for place in np.unique(places[there].round(3), axis=0):
-        axes.add_patch(Ellipse(place, *FOOT_M, **style))
+    names = (f"{whose}_{side}_{name}" for name in ("x_m", "y_m", "yaw_rad"))
+    places = np.column_stack([walk[name] for name in names])
+    for x_m, y_m, yaw_rad in np.unique(places[there].round(3), axis=0):
+        axes.add_patch(Ellipse((x_m, y_m), *FOOT_M, angle=math.degrees(yaw_rad), **style))
 
 
-def _draw_fall(views: Sequence[Axes], walk: Columns) -> None:
+def _draw_fall(axes: Axes, walk: Columns) -> None:
     """Mark where the CoM came down."""
     at = walk["true_com_x_m"][-1], walk["true_com_y_m"][-1]
-    for axes in views:
-        axes.plot(*at, "X", color="black", ms=11, mec="white", zorder=5)
-        axes.annotate("fell", at, (8, 8), textcoords="offset points", weight="bold")
+    axes.plot(*at, "X", color="black", ms=11, mec="white", zorder=5)
+    axes.annotate("fell", at, (8, 8), textcoords="offset points", weight="bold")
 
 
 def lateral_limits(walk: Columns) -> tuple[float, float]:
     """Lateral limits with room for the feet and for a CoM that falls away from them."""
     names = ("true_com_y_m", *(f"true_{side}_y_m" for side, _ in FEET))
     lateral = np.concatenate([walk[name] for name in names])
-    return min(lateral.min() - 0.15, -0.5), max(lateral.max() + 0.15, 0.5)
+    middle = float(np.median(walk["true_com_y_m"]))
+    return min(lateral.min() - 0.15, middle - 0.5), max(lateral.max() + 0.15, middle + 0.5)
 
 
 def draw_arrow(axes: Axes, text: str, tail: complex, at: complex) -> None:
@@ -223,7 +271,8 @@ def draw_arrow(axes: Axes, text: str, tail: complex, at: complex) -> None:
 def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
     index = int(np.argmin(np.abs(walk["t_s"] - push.time_s)))
     at = complex(walk["true_com_x_m"][index], walk["true_com_y_m"][index])
-    tail = at - 0.4 * push.vector_n_s / abs(push.vector_n_s)
+    ahead = cmath.rect(1.0, walk["heading_rad"][index])
+    tail = at - 0.4 * ahead * push.vector_n_s / abs(push.vector_n_s)
     draw_arrow(axes, f"push\n{push.impulse_n_s:.3g} N·s", tail, at)
 
 
