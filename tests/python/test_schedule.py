@@ -181,11 +181,24 @@ def test_a_speed_that_is_not_feasible_is_limited_and_reported(schedule, capsys):
     assert printed.count("\n") == 1 and f"{path}: line 3, speed_m_s: 2.5 is not feasible" in printed
 
 
+def size_of(picture) -> tuple[int, int]:
+    header = picture.read_bytes()[:24]
+    assert header[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", header[16:])
+
+
 def test_picture_is_drawn(capsys, tmp_path):
     picture = tmp_path / "walk.png"
     assert plan(capsys, str(EXAMPLE), "--ankle", "cycloid", "--picture", str(picture))
-    header = picture.read_bytes()[:24]
-    assert header[:8] == b"\x89PNG\r\n\x1a\n" and struct.unpack(">II", header[16:]) == (1200, 800)
+    assert size_of(picture) == (1200, 800)
+
+
+def test_picture_of_a_turn_is_to_scale(capsys, tmp_path):
+    picture = tmp_path / "walk.png"
+    eight = EXAMPLE.with_name("figure-of-eight.csv")
+    assert plan(capsys, str(eight), "--picture", str(picture))
+    width, height = size_of(picture)
+    assert width == 1200 and height > 1500  # the eight is taller than wide
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ def draw_schedule(path: str, changes: Sequence[SpeedChange], walked: Sequence[In
     com_m = np.array([_com_m(instant) for instant in walked])
     turns = any(instant.output.plan.heading_rad != 0 for instant in walked)
     ratios = (1.0, _height(com_m), 1.0, 1.0) if turns else (1.0, 1.25, 1.0)
-    figure = Figure(figsize=(12, 2.5 * sum(ratios)), dpi=100, layout="constrained")
+    figure = Figure(figsize=(12, 8 / 3.25 * sum(ratios)), dpi=100, layout="constrained")
     speed, above, height, *turning = figure.subplots(len(ratios), 1, height_ratios=ratios)
     figure.suptitle("A planned walk: start, change of speed, stop")
     _draw_speed(speed, changes, walked, time_s)
