@@ -112,7 +112,7 @@ class LcmNode:
     def __init__(self, url: str) -> None:
         self.lcm = open_lcm(url)
         self.latest = {}
-        channels = "SADDLEWALK_(INPUT|TURN|PLAN|SCORES|VERDICT|BALANCE|BOS|STATUS|HEALTH)"
+        channels = "SADDLEWALK_(INPUT|TURN|PLAN|SCORES|VERDICT|BALANCE|BOS|WAY|STATUS|HEALTH)"
         self.lcm.subscribe(channels, self._take).set_queue_capacity(1000)
 
     def _take(self, channel: str, data: bytes) -> None:

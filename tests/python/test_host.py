@@ -258,7 +258,7 @@ def test_lcm_and_can_carry_the_same_values():
         )
         assert_same_verdict(on_lcm["SADDLEWALK_VERDICT"], on_can)
         assert_same_balance(on_lcm["SADDLEWALK_BALANCE"], on_can)
-        assert len(on_lcm) == 8
+        assert len(on_lcm) == 10
         assert {message.utime_us for message in on_lcm.values()} == {4 * 80000}
         assert (health.tick, health.measurement_age_us, health.frames_accepted) == (4, 0, 21)
         assert health.can_transport == health.TRANSPORT_UDP
