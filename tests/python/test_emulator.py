@@ -232,8 +232,9 @@ def test_a_recovery_step_reaches_its_place_within_the_legs_speed():
 
     def plan_with(recovery: RecoveryStep | None) -> Plan:
         return Plan(
-            mode=WALKING, support=RIGHT, step_length_m=0.7, speed_m_s=1.2, com_m=0.05 + 0.05j,
-            velocity_m_s=1.2 + 0j, feet_m=(0.0 + 0.1j, 0j), foot_heights_m=(0.05, 0.0),
+            mode=WALKING, support=RIGHT, heading_rad=0.0, yaw_rad=(0.0, 0.0), pelvis_yaw_rad=0.0,
+            step_length_m=0.7, speed_m_s=1.2, com_m=0.05 + 0.05j, velocity_m_s=1.2 + 0j,
+            feet_m=(0.0 + 0.1j, 0j), foot_heights_m=(0.05, 0.0),
             swing_velocity_m_s=2.8 + 0j, swing_rise_m_s=0.0, time_to_via_point_s=0.25,
             time_to_landing_s=0.25, landing_m=0.7 + 0.1j, leg_length_m=1.02, height_m=1.0,
             pitch_rad=(0.0, 0.0), recovery=recovery,
