@@ -239,7 +239,7 @@ def test_what_was_seen_is_in_sentences(walk, page):
         f"The person took {len(steps)} steps in 13 s and covered 13.1 m. The steady steps came at "
         f"{cadence:.0f} a minute, at {speed_m_s:.1f} m/s." in page.text
     )
-    assert "Balance was stable for 100% of the time, without an alarm." in page.text
+    assert "Balance was stable for 13 s, without an alarm." in page.text
     left, right = (steady.length_m[steady.side == side].mean() for side in (0, 1))
     longer, percent = "left" if left > right else "right", 200 * abs(left - right) / (left + right)
     assert f"The {longer} foot's steps were longer by {percent:.0f} %, which is not" in page.text
@@ -259,7 +259,8 @@ def test_the_clinicians_part_prints_on_two_pages(walk, tmp_path):
         seen = printed.inner_text("body")
     assert len(re.findall(rb"/Type\s*/Page\b", pdf)) == 2
     assert "What was seen" in seen and "Gait" in seen
-    assert "Configuration" not in seen and "Data quality" not in seen
+    assert "Data quality: no measurement was missing, late or implausible." in seen
+    assert "Configuration" not in seen and "ticks in the log" not in seen
 
 
 def test_alarms_have_start_duration_level_and_reason(walk, tmp_path, unseen):
@@ -287,7 +288,7 @@ def test_alarms_have_start_duration_level_and_reason(walk, tmp_path, unseen):
         ["4.00", "0.24", "unstable", "-0.030", reason_words(16), reason_words(3)],
     ]
     assert page.short["episodes by level"] == "unstable 1, caution 1, unknown 0"
-    assert "stable for 92% of the time; other episodes: 1 unstable, 1 caution." in page.text
+    assert "Balance was stable for 12 s, in caution for 0.8 s and unstable for 0.2 s." in page.text
     assert f"The worst began at 4.0 s and lasted 0.2 s: {reason_words(16)}." in page.text
     assert ["unstable", "0.24", f"{3 / TICKS:.1%}"] in page.tables["level", "time (s)", "share"]
 
@@ -333,6 +334,7 @@ def test_the_worst_alarms_of_a_long_run_are_shown_in_detail(walk, tmp_path, monk
     page = report(log, tmp_path / "a.html")
     views = re.findall(r"Detail: (\w+) from (\S+) s\.", page.text)
     assert views == [("unstable", "3.20"), ("caution", "4.80"), ("caution", "6.40")]
+    assert "Each alarm (the worst 8 if there are more)" in page.text
 
 
 def test_faults_late_ticks_and_rejected_frames_are_reported(walk, tmp_path):
@@ -349,6 +351,7 @@ def test_faults_late_ticks_and_rejected_frames_are_reported(walk, tmp_path):
     ((name, words, *numbers),) = page.tables[PROBLEMS]
     assert (name, numbers) == ("LEFT_STALE", ["2", "0.24", "1.60", "2.40"])
     assert words == "the left foot's measurement is too old"
+    assert f"Data quality: {words} (0.2 s)." in page.text
     assert f"{TICKS - 1} ticks late, 4 missed" in page.short["timing, since the firmware's start"]
     text = page.short["CAN, since the firmware's start"]
     assert text.startswith("1234 frames accepted, rejected: 7 bad CRC")

@@ -44,6 +44,10 @@ class Row:
     published: str
     meaning: str
 
+    @property
+    def decimals(self) -> int:
+        return 3 if self.unit == "m" else 1
+
 
 @dataclass(frozen=True)
 class Configured:

@@ -62,11 +62,12 @@ def write_page(log: Path, session: Session) -> str:
             kind: html_page.picture(names[kind], each.caption) for kind, each in pictures.items()
         }
         sections += [
-            "## What was seen\n\n" + "\n\n".join(sentences(run, walk, alarms(run))),
+            "## What was seen\n\n" + "\n\n".join(sentences(run, walk, alarms(run), found)),
             on_screen(f"## Summary\n\n{_summary(run, walk)}"),
             f"## Levels and alarms\n\n{shown['level']}\n\n{_levels(run)}\n\n{_alarms(run)}",
+            shown.get("alarms", ""),
             on_screen(f"## Scores\n\n{shown['scores']}"),
-            *(words for kind, words in shown.items() if kind.startswith("alarm")),
+            *(on_screen(words) for kind, words in shown.items() if kind.startswith("alarm-")),
             f"## Gait\n\n{_gait(run, walk)}",
             on_screen(f"## Steps\n\n{_steps(walk)}\n\n{shown.get('steps', '')}"),
             on_screen(f"## Data quality\n\n{_quality(run, found)}\n\n{shown.get('problems', '')}"),
@@ -257,8 +258,8 @@ def _gait(run: Run, walk: Walked | None) -> str:
         [
             row.quantity,
             row.unit,
-            _known(row.measured, 3),
-            "" if np.isnan(row.configured) else f"{row.configured:.3f}",
+            _known(row.measured, row.decimals),
+            "" if np.isnan(row.configured) else f"{row.configured:.{row.decimals}f}",
             row.published,
             row.meaning,
         ]

@@ -1,6 +1,8 @@
 """The pictures of a run: level and reasons, speed, scores, margins and energies, steps."""
 
 import io
+import itertools
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -25,6 +27,7 @@ SHOWN_SCORES = (-0.5, 1.6)
 NO_NUMBERS = "not known"
 LONG_S = 60.0  # in a longer run the worst alarms are also drawn in detail
 WORST = 3
+DRAWN, ACROSS = 8, 4  # small pictures of alarms, and in a row
 AROUND_S = 3.0  # shown before and after an alarm
 CLOSELY_S = 15.0  # at most
 COLUMNS = 1500  # of pixels, roughly, across the axes
@@ -44,9 +47,13 @@ def draw(run: Run, walk: Walked | None, problems: Sequence[Problem]) -> dict[str
         "level": Picture(_LEVEL, _draw_level(run)),
         "scores": Picture(_SCORES, _draw_scores(run)),
     }
-    for number, span in enumerate(_worst(run), start=1):
+    alarms = run.spans(run.levels)
+    alarms = alarms.where(np.isin(alarms.value, list(SHADES)))
+    if len(alarms):
+        pictures["alarms"] = Picture(_ALARMS.format(DRAWN), _draw_alarms(run, alarms.worst(DRAWN)))
+    for number, span in enumerate(alarms.worst(WORST) if run.duration_s >= LONG_S else ()):
         caption = _ALARM.format(level_name(span.value), span.start_s)
-        pictures[f"alarm-{number}"] = Picture(caption, _draw_scores(run, *_about(span)))
+        pictures[f"alarm-{number + 1}"] = Picture(caption, _draw_scores(run, *_about(span)))
     if walk and len(walk.steps):
         caption = _STEPS.format("as measured" if walk.measured else "as planned")
         pictures["steps"] = Picture(caption, _draw_steps(run, walk))
@@ -65,6 +72,10 @@ _SCORES = (
     "the base of support and the reach that a recovery step has left (negative: outside, or "
     "lacking); energy beyond that of standing still and beyond the plan's. Shaded: the alarms, "
     "caution lightly and unstable darkly. Values far outside are cut off."
+)
+_ALARMS = (
+    "Each alarm (the worst {} if there are more): the margin, solid, and the limit below which it "
+    "is caution, dashed. Red: unstable. Grey: the alarm."
 )
 _ALARM = "Detail: {} from {:.2f} s."
 _STEPS = "Each step, {}, by the foot that landed."
@@ -110,12 +121,20 @@ def _extents(spans: Spans, shown_s: float) -> list[tuple[float, float]]:
     return list(zip(start_s, end_s[np.append(apart, -1)] - start_s, strict=True))
 
 
-def _worst(run: Run) -> Spans | tuple[()]:
-    """The worst alarms of a long run, in order of time."""
-    if run.duration_s < LONG_S:
-        return ()
-    spans = run.spans(run.levels)
-    return spans.where(np.isin(spans.value, list(SHADES))).worst(WORST)
+def _draw_alarms(run: Run, alarms: Spans) -> bytes:
+    """The margin about each, small."""
+    rows = math.ceil(len(alarms) / ACROSS)
+    figure = Figure(figsize=(13, 0.4 + 1.9 * rows), dpi=110, layout="constrained")
+    panels = figure.subplots(rows, ACROSS, squeeze=False).flat
+    for axes, alarm in itertools.zip_longest(panels, alarms):
+        if alarm is None:
+            axes.set_axis_off()
+            continue
+        shown = _about(alarm)
+        _draw_margin(axes, run, shown)
+        axes.get_legend().remove()
+        axes.set(xlim=shown, title=f"{alarm.start_s:.1f} s: {level_name(alarm.value)}")
+    return _png(figure)
 
 
 def _about(span: Span) -> tuple[float, float]:

@@ -1,11 +1,13 @@
 """What a session's run was like, in sentences for someone who reads no tables."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from saddlewalk.contract import LEVELS
 from saddlewalk.session import gait
+from saddlewalk.session.quality import FAULT_WORDS, Problem, gaps
+from saddlewalk.session.quality import missing as missing_channels
 from saddlewalk.session.runs import Run, Spans
 from saddlewalk.session.steps import Walked
 
@@ -17,7 +19,19 @@ MEANING = {
 }
 
 
-def sentences(run: Run, walk: Walked | None, alarms: Spans) -> Iterator[str]:
+IN_LEVEL = {
+    "stable": "stable",
+    "caution": "in caution",
+    "unstable": "unstable",
+    "unknown": "not known",
+}
+TOLD = 3  # problems of the data
+
+
+def sentences(
+    run: Run, walk: Walked | None, alarms: Spans, problems: Sequence[Problem]
+) -> Iterator[str]:
+    """problems: of the data."""
     yield _walked(run, walk)
     if run.fell_s is not None:
         yield f"The wearer fell, {run.fell_s:.1f} s after the beginning."
@@ -25,6 +39,7 @@ def sentences(run: Run, walk: Walked | None, alarms: Spans) -> Iterator[str]:
         yield from _balance(run, alarms)
     if walk and walk.measured and len(walk.steps):
         yield from _evenness(run, walk)
+    yield _data(run, problems)
 
 
 def _walked(run: Run, walk: Walked | None) -> str:
@@ -43,17 +58,15 @@ def _walked(run: Run, walk: Walked | None) -> str:
 
 
 def _balance(run: Run, alarms: Spans) -> Iterator[str]:
-    stable = run.levels == LEVELS.index("stable")
-    share = run.hold_s[stable].sum() / run.duration_s
+    counts = {name: int((alarms.value == LEVELS.index(name)).sum()) for name in MEANING}
+    parts = []
+    for name, words in IN_LEVEL.items():
+        held_s = float(run.hold_s[run.levels == LEVELS.index(name)].sum())
+        times = f" ({counts[name]} times)" if counts.get(name, 0) > 1 else ""
+        parts += [f"{words} for {_duration(held_s)}{times}"] if held_s else []
+    yield f"Balance was {_list(parts)}{'' if len(alarms) else ', without an alarm'}."
     if not len(alarms):
-        yield f"Balance was stable for {share:.0%} of the time, without an alarm."
         return
-    counts = {
-        name: int((alarms.value == LEVELS.index(name)).sum())
-        for name in ("unstable", "caution", "unknown")
-    }
-    episodes = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
-    yield f"Balance was stable for {share:.0%} of the time; other episodes: {episodes}."
     yield " ".join(MEANING[name] for name, count in counts.items() if count)
     (worst,) = alarms.worst(1)
     lowest = run.lowest_margin(worst.ticks)
@@ -72,5 +85,23 @@ def _evenness(run: Run, walk: Walked) -> Iterator[str]:
             )
 
 
+def _data(run: Run, problems: Sequence[Problem]) -> str:
+    """The quality of the data, the longest problems first."""
+    missing, lacks = gaps(run, 0), missing_channels(run)
+    told = [f"{_duration(missing.duration_s)} are not in the log"] if missing.count else []
+    told += ["not all channels were logged"] if lacks else []
+    faults = [each for each in problems if each.name in FAULT_WORDS]
+    lasting = sorted(faults, key=lambda each: -each.spans.duration_s.sum())
+    told += [f"{each.words} ({_duration(each.spans.duration_s.sum())})" for each in lasting[:TOLD]]
+    found = "; ".join(told) or "no measurement was missing, late or implausible"
+    return f"Data quality: {found}."
+
+
+def _list(parts: Sequence[str]) -> str:
+    return " and ".join(filter(None, (", ".join(parts[:-1]), *parts[-1:])))
+
+
 def _duration(time_s: float) -> str:
+    if time_s < 10:
+        return f"{time_s:.1f} s"
     return f"{time_s:.0f} s" if time_s < 120 else f"{time_s / 60:.1f} minutes"
