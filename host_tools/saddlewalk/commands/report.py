@@ -14,8 +14,8 @@ def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser(
         "report",
         help="an LCM log of a session as one HTML page",
-        description="Write a log of `saddlewalk demo`, `replay --log` or lcm-logger as one HTML "
-        "page with everything embedded: scores, levels and alarms with their reasons, steps and their "
+        description="Write a log of `saddlewalk demo`, `replay --log` or lcm-logger as one "
+        "HTML page with everything embedded: scores, levels and alarms, steps and their "
         "variability, distance, data quality, configuration. Exit status 1 if the log is "
         "incomplete; the page then says so.",
     )
