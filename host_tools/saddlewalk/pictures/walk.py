@@ -256,8 +256,9 @@ def lateral_limits(walk: Columns) -> tuple[float, float]:
 
 def draw_arrow(axes: Axes, text: str, tail: complex, at: complex) -> None:
     """The arrow of a push; complex numbers are x forward + 1j * y to the left."""
+    along = abs((at - tail).real) > abs((at - tail).imag)  # the text would hide the walk
     axes.annotate(
-        text,
+        "" if along else text,
         xy=(at.real, at.imag),
         xytext=(tail.real, tail.imag),
         arrowprops={"arrowstyle": "-|>", "color": PINK, "lw": 3},
@@ -266,6 +267,9 @@ def draw_arrow(axes: Axes, text: str, tail: complex, at: complex) -> None:
         va="center",
         weight="bold",
     )
+    if along:
+        below: dict[str, Any] = {"ha": "center", "va": "center", "weight": "bold", "clip_on": True}
+        axes.text(tail.real, tail.imag - 0.3, text, color=PINK, **below)
 
 
 def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
