@@ -13,6 +13,10 @@ static volatile saddle_config_t any_config;
 static volatile saddle_command_t any_command;
 static volatile saddle_output_t any_output;
 static volatile saddle_joint_loop_config_t any_joints;
+static volatile saddle_legs_t any_legs;
+static volatile saddle_estimator_config_t any_estimator_config;
+static volatile saddle_joint_walk_config_t any_walk_config;
+static volatile saddle_drive_config_t any_drive_config;
 static volatile saddle_plan_t any_plan;
 static volatile saddle_estimate_t any_estimate;
 static volatile saddle_intent_t any_intent;
@@ -86,6 +90,84 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
     return any_bool() ? SADDLE_OK : SADDLE_ERROR_TIME;
 }
 
+/** A part of the joints' configuration has one field here, the first. */
+static const saddle_config_field_t *field_at(size_t index)
+{
+    static const saddle_config_field_t field = {"first", 0, 0.0f, 1.0f};
+    return index == 0u ? &field : NULL;
+}
+
+static const char *any_bad_field(void)
+{
+    return any_bool() ? "first" : NULL;
+}
+
+const saddle_config_field_t *saddle_legs_field(size_t index)
+{
+    return field_at(index);
+}
+
+const saddle_config_field_t *saddle_estimator_field(size_t index)
+{
+    return field_at(index);
+}
+
+const saddle_config_field_t *saddle_joint_walk_field(size_t index)
+{
+    return field_at(index);
+}
+
+const saddle_config_field_t *saddle_drive_field(size_t index)
+{
+    return field_at(index);
+}
+
+const char *saddle_legs_check(const saddle_legs_t *legs)
+{
+    (void)legs;
+    return any_bad_field();
+}
+
+const char *saddle_estimator_check(const saddle_estimator_config_t *config)
+{
+    (void)config;
+    return any_bad_field();
+}
+
+const char *saddle_joint_walk_check(const saddle_joint_walk_config_t *config)
+{
+    (void)config;
+    return any_bad_field();
+}
+
+const char *saddle_drive_check(const saddle_drive_config_t *config)
+{
+    (void)config;
+    return any_bad_field();
+}
+
+saddle_legs_t saddle_legs_default(float body_height_m, float body_mass_kg)
+{
+    (void)body_height_m;
+    (void)body_mass_kg;
+    return any_legs;
+}
+
+saddle_estimator_config_t saddle_estimator_default(void)
+{
+    return any_estimator_config;
+}
+
+saddle_joint_walk_config_t saddle_joint_walk_default(void)
+{
+    return any_walk_config;
+}
+
+saddle_drive_config_t saddle_drive_default(void)
+{
+    return any_drive_config;
+}
+
 saddle_status_t saddle_plan_at(const saddle_context_t *context, uint64_t time_us,
                                saddle_plan_t *plan)
 {
@@ -152,8 +234,8 @@ void saddle_joint_commands(const saddle_legs_t *legs, const saddle_drive_config_
 /** A page of flash with anything in it, and a CRC that fits by chance. */
 static void read_settings(saddle_settings_t *settings)
 {
-    static uint32_t page[256];
-    for (size_t i = 0; i < 256u; ++i) {
+    static uint32_t page[128];
+    for (size_t i = 0; i < 128u; ++i) {
         page[i] = any_uint32;
     }
     (void)saddle_settings_read(page, settings);
@@ -194,7 +276,7 @@ int main(void)
     static saddle_controller_t controller;
     static saddle_settings_t settings;
     settings.config = any_config;
-    settings.joints = any_joints;
+    settings.joints = any_bool() ? any_joints : saddle_joint_loop_default(&settings.config);
     read_settings(&settings);
     uint8_t key[SADDLE_CMAC_LENGTH];
     for (size_t i = 0; i < SADDLE_CMAC_LENGTH; ++i) {

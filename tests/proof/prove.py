@@ -24,9 +24,6 @@ CORE = FIRMWARE / "core/src"
 ARGUED = HERE / "argued.toml"
 
 MODULES = [file for file in sorted(CORE.rglob("*.c")) if file.name != "bytes.c"]
-JOINTS = FIRMWARE / "joints/src"
-FIELDS = [CORE / "model/config.c", CORE / "math/fields.c", JOINTS / "kinematics/legs.c"]
-FIELDS += sorted((JOINTS / "settings").glob("*.c"))
 WIRE = sorted((FIRMWARE / "wire/src").glob("*.c"))
 PORTS = [*sorted((FIRMWARE / "port_common").glob("*.c"))] + [
     FIRMWARE / "port_mcu" / f"{name}.c" for name in ("can_queue", "controller", "settings", "slcan")
@@ -37,7 +34,7 @@ HARNESSES = {
     "bytes": ([CORE / "math/bytes.c"], 100, ""),
     "wire": (WIRE, 300, ""),
     "ports": (
-        [*WIRE, *PORTS, *FIELDS],
+        [*WIRE, *PORTS, CORE / "model/config.c"],
         300,
         "saddle_settings_crc:400,saddle_settings_read:400,saddle_slcan_write:400,"
         "write_number:20,crc_of:4000",
@@ -57,7 +54,7 @@ def command(harness: str, signals: Path) -> list[str]:
     version = re.search(r'^VERSION "(\d+)"', (FIRMWARE / "wire/saddlewalk.dbc").read_text(), re.M)
     if version is None:
         sys.exit("saddlewalk.dbc: no VERSION")
-    rooms = "core/include core/src joints/include joints/src wire/include port_common".split()
+    rooms = "core/include core/src joints/include wire/include port_common".split()
     folders = [FIRMWARE / room for room in rooms]
     includes = " ".join(f"-I{folder}" for folder in [*folders, FIRMWARE / "port_mcu", signals])
     return [

@@ -1,5 +1,6 @@
 """The whole chain: a body's sensors by CAN to the firmware, its joint commands by CAN back."""
 
+import argparse
 import re
 
 import numpy as np
@@ -7,11 +8,18 @@ import pytest
 
 from saddlewalk.cli import main
 from saddlewalk.config import configuration
+from saddlewalk.core import config_bytes
+from saddlewalk.emulation.wearer import Push
 from saddlewalk.physics.plants import PlantChoice
 
+chain_pushes = pytest.importorskip(
+    "saddlewalk.evaluation.chain_pushes", reason="MuJoCo is missing: run `make physics`"
+)
 joint_campaign = pytest.importorskip(
     "saddlewalk.faults.joint_campaign", reason="MuJoCo is missing: run `make physics`"
 )
+
+joint_chain = pytest.importorskip("saddlewalk.physics.joint_chain", reason="as above")
 
 pytestmark = pytest.mark.firmware
 
@@ -109,6 +117,29 @@ def in_this_process(runs, seed, config, _, progress):
     progress(0)
     places = range(len(joint_campaign.CLASSES))
     return [joint_campaign.run(place, run, seed, config) for place in places for run in range(runs)]
+
+
+def test_pushes_find_what_half_survive(monkeypatch, capsys):
+    """Of a body that falls at 30 N s and more, whatever the direction."""
+
+    def walk(_, __, course):
+        return argparse.Namespace(fell=course.push.impulse_n_s >= 30.0)
+
+    monkeypatch.setattr(chain_pushes, "walk", walk)
+    impulse_n_s = chain_pushes.staircase("left", 20, 0.8, 1, config_bytes(body()))
+    assert impulse_n_s == [pytest.approx(30.0, abs=2.0)]
+    assert main(["chain", "--pushes", "8", "--rate", "250"]) == 2
+    assert "--rate 250: not with --pushes" in capsys.readouterr().err
+
+
+def test_a_hard_push_fells_and_a_soft_one_does_not():
+    config = body()
+    fell = []
+    for impulse_n_s in (2.0, 200.0):
+        course = joint_chain.Course(0.8, 2.0, 250, 1, 0.0, Push(impulse_n_s, 3.2, 90.0))
+        firmware = joint_campaign.FaultyFirmware(config, [], np.random.default_rng(1))
+        fell.append(joint_chain.walk(firmware, config, course).fell)
+    assert fell == [False, True]
 
 
 @pytest.mark.parametrize("option", [["--live", "3"], ["--body", "winter"]])

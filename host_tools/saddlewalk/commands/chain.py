@@ -6,14 +6,24 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from saddlewalk.config import add_body_options, host_arguments, load_config
-from saddlewalk.options import MUJOCO, WINTER, number_in, whole_number_in
+from saddlewalk.errors import UserError
+from saddlewalk.options import (
+    JOINTS,
+    MUJOCO,
+    WINTER,
+    add_campaign_options,
+    number_in,
+    whole_number_in,
+    workers_of,
+)
+from saddlewalk.progress import progress_bar
 
 if TYPE_CHECKING:
     from saddlewalk.physics.joint_chain import Outcome
     from saddlewalk.ticks import FrameBus
 
 HOST, EMULATED, BOTH = "host", "qemu-m4", "both"
-SPEED_M_S, DISTANCE_M, RATE_HZ = 0.8, 15.0, 500
+SPEED_M_S, DISTANCE_M, DEFAULT_RATE_HZ = 0.8, 15.0, 500
 
 
 def add_parser(subparsers: Any) -> None:
@@ -46,16 +56,16 @@ def add_parser(subparsers: Any) -> None:
         "--rate",
         type=int,
         choices=(125, 200, 250, 500, 1000),
-        default=RATE_HZ,
-        help=f"sets of sensors, and of joint commands, in a second (default {RATE_HZ})",
+        default=DEFAULT_RATE_HZ,
+        help=f"sets of sensors, and of joint commands, in a second (default {DEFAULT_RATE_HZ})",
     )
     parser.add_argument(
-        "--seed",
-        type=whole_number_in(0, 2**32 - 1),
-        default=0,
+        "--pushes",
+        type=whole_number_in(8, 1000),
         metavar="N",
-        help="of the sensors' noise and biases (default 0)",
+        help="instead N walks with a push in each of four directions: what do half survive?",
     )
+    add_campaign_options(parser)
     add_body_options(parser)
     parser.set_defaults(run=run)
 
@@ -65,8 +75,10 @@ def run(args: argparse.Namespace) -> int:
     from saddlewalk.physics.joint_chain import Course, walk
     from saddlewalk.physics.plants import chosen_plant
 
-    args.plant, args.body, args.drive = MUJOCO, WINTER, "joints"
+    args.plant, args.body, args.drive = MUJOCO, WINTER, JOINTS
     config = load_config(args, body=chosen_plant(args).fields)
+    if args.pushes:
+        return _pushed(args, config)
     course = Course(args.speed, args.distance, args.rate, args.seed)
     outcomes: list[Outcome] = []
     for firmware in (HOST, EMULATED) if args.firmware == BOTH else (args.firmware,):
@@ -79,6 +91,25 @@ def run(args: argparse.Namespace) -> int:
         print("bits of both: " + ("equal" if same else "NOT equal"))
     sound = all(outcome.stands for outcome in outcomes)
     return 0 if sound and same else 1
+
+
+def _pushed(args: argparse.Namespace, config: Any) -> int:
+    from saddlewalk.evaluation.chain_pushes import DIRECTIONS, survived
+    from saddlewalk.faults.joint_campaign import RATE_HZ
+
+    for option, value, default in (
+        ("firmware", args.firmware, HOST),
+        ("distance", args.distance, DISTANCE_M),
+        ("rate", args.rate, DEFAULT_RATE_HZ),
+    ):
+        if value != default:
+            raise UserError(f"--{option} {value}: not with --pushes, leave it out")
+    workers = workers_of(args)
+    with progress_bar("directions", len(DIRECTIONS)) as progress:
+        found = survived(args.pushes, args.speed, args.seed, config, workers, progress)
+    words = ", ".join(f"{direction} {impulse:.0f}" for direction, impulse in found.items())
+    print(f"half survive, N s, at {args.speed:g} m/s and {RATE_HZ} Hz: {words}")
+    return 0
 
 
 def _words(outcome: "Outcome") -> str:

@@ -90,7 +90,9 @@ class FaultyFirmware:
 
     channel_info = "the firmware in this process"
 
-    def __init__(self, config: Any, occurrence: Occurrence, random: np.random.Generator) -> None:
+    def __init__(
+        self, config: Any, occurrences: Sequence[Occurrence], random: np.random.Generator
+    ) -> None:
         lib = library()
         self._context = ffi().new("saddle_context_t *")
         self._inbox = ffi().new("saddle_inbox_t *")
@@ -99,13 +101,13 @@ class FaultyFirmware:
         self._health = ffi().new("saddle_wire_health_t *")
         self._output_frames = ffi().new("saddle_frame_t[]", OUTPUT_FRAMES)
         self._joint_frames = ffi().new("saddle_frame_t[]", JOINT_FRAMES)
-        self._line, self._back = Line([occurrence], random), Line([occurrence], random)
+        self._line, self._back = Line(occurrences, random), Line(occurrences, random)
         self._waiting: deque[can.Message] = deque()
         self._passes = 0
         # When the last of each that was accepted was measured. A reading that repeats itself cannot
         # be told from a new one: it counts as new.
         self._imu_s = dict.fromkeys(IMU, 0.0)
-        self._repeats = occurrence.kind == "stuck"
+        self._repeats = any(occurrence.kind == "stuck" for occurrence in occurrences)
         self._faults_before = 0
         self.detected_s = self.fallback_s = math.nan
         self.violations: dict[str, None] = {}
@@ -230,7 +232,7 @@ def run(place: int, number: int, seed: int, config: Any) -> Outcome:
     _, messages, kind, strength = CLASSES[place]
     random = np.random.default_rng([seed, place, number])
     occurrence = draw(Fault(kind, strength, messages, BEGINS_S, LASTS_S), random)
-    firmware = FaultyFirmware(config, occurrence, random)
+    firmware = FaultyFirmware(config, [occurrence], random)
     course = Course(SPEED_M_S, DISTANCE_M, RATE_HZ, int(random.integers(2**32)), STOPPING_S)
     outcome = walk(firmware, config, course)
     return Outcome(

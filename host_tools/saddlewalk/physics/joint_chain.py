@@ -15,7 +15,7 @@ import numpy as np
 
 from saddlewalk.contract import GRAVITY_M_S2, STAND, STANDING, TICK_S, WALK
 from saddlewalk.core import ffi
-from saddlewalk.emulation.wearer import STEP_S, Body
+from saddlewalk.emulation.wearer import STEP_S, Body, Push
 from saddlewalk.errors import UserError
 from saddlewalk.joints import Estimator, legs
 from saddlewalk.physics.body import winter
@@ -49,6 +49,7 @@ class Course:
     rate_hz: int  # of the sensors and the joint commands
     seed: int = 0
     stopping_s: float = STOPPING_S  # from the command to stop to the end
+    push: Push | None = None
 
     @property
     def stop_s(self) -> float:
@@ -163,6 +164,14 @@ class BusDevice:
         return frame.arbitration_id == identifier("JOINTS_STATE")
 
 
+def _force(push: Push | None, time_s: float) -> complex:
+    """Through the CoM, in N."""
+    lasts_s = Push.STEPS * STEP_S
+    if push is None or not push.time_s <= time_s < push.time_s + lasts_s:
+        return 0j
+    return push.vector_n_s / lasts_s
+
+
 def _vector(vector: Any) -> dict[str, float]:
     return {"X": vector.x, "Y": vector.y, "Z": vector.z}
 
@@ -187,7 +196,7 @@ def walk(bus: FrameBus, config: Any, course: Course) -> Outcome:
         fallbacks += int(device.state["FALLBACK"])
         unsound += device.state["FAULTS"] != 0
         for _ in range(steps):
-            plant.step(drive_torques(plant, device.commands), 0j)
+            plant.step(drive_torques(plant, device.commands), _force(course.push, plant.data.time))
             device.sense()
         if plant.com_m[2] < pendulum.fall_height * pendulum.pendulum_m:
             fell_at_s = passes / course.rate_hz
