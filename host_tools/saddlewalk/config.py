@@ -17,6 +17,8 @@ DEFAULT_HEIGHT_M = 1.79
 DEFAULT_MASS_KG = 63.3
 ANKLES = {"erf": 0, "rigid": 1, "cycloid": 2}
 
+LEGS = "legs"  # table of a file
+
 # Old names of fields, accepted with a warning for one version.
 RENAMED = {"foresight_s": "prediction_horizon_s"}
 
@@ -30,7 +32,7 @@ def add_body_options(parser: argparse.ArgumentParser) -> None:
         "--config",
         type=Path,
         metavar="FILE",
-        help="TOML file with fields of saddle_config_t",
+        help="TOML file with fields of saddle_config_t, and of saddle_legs_t in a table [legs]",
     )
 
 
@@ -66,6 +68,17 @@ def given_fields(args: argparse.Namespace) -> dict[str, float | int]:
     return fields
 
 
+def given_legs(args: argparse.Namespace) -> dict[str, float]:
+    """Fields of saddle_legs_t in the file's table [legs]: what was measured of the legs.
+
+    Raises UserError naming the file and the field that is wrong.
+    """
+    table = read_toml(args.config, "--config").get(LEGS, {}) if args.config else {}
+    if not isinstance(table, dict):
+        raise UserError(f"{args.config}: {LEGS} = {table!r} must be a table")
+    return {name: _leg_field(args.config, name, value) for name, value in table.items()}
+
+
 def configuration(fields: Mapping[str, float | int]) -> Any:
     """A saddle_config_t with these fields, and the paper's defaults for the others. Not checked."""
     from saddlewalk.core import ffi, library
@@ -95,7 +108,9 @@ def _origin(field: str, args: argparse.Namespace) -> str:
 
 def _read_file(path: Path) -> dict[str, float | int]:
     fields = {
-        _present_name(path, name): value for name, value in read_toml(path, "--config").items()
+        _present_name(path, name): value
+        for name, value in read_toml(path, "--config").items()
+        if name != LEGS
     }
     return {name: _field_value(path, name, value) for name, value in fields.items()}
 
@@ -108,6 +123,19 @@ def _present_name(path: Path, name: str) -> str:
             file=sys.stderr,
         )
     return RENAMED.get(name, name)
+
+
+def _leg_field(path: Path, name: str, value: Any) -> float:
+    from saddlewalk.joints import fields
+
+    known = fields()
+    if name not in known:
+        raise UserError(f"{path}: [{LEGS}]: {name} is not a field of saddle_legs_t")
+    low, high = known[name].min, known[name].max
+    number = not isinstance(value, bool) and isinstance(value, int | float)
+    if not number or not low <= value <= high:
+        raise UserError(f"{path}: [{LEGS}]: {name} = {value!r} must be in {low:g} to {high:g}")
+    return float(value)
 
 
 def _field_value(path: Path, name: str, value: Any) -> float | int:

@@ -38,9 +38,11 @@ def legs(height_m: float, mass_kg: float, measured: Mapping[str, float] | None =
     return result
 
 
-def loop_settings(config: Any) -> list[tuple[str, str, float]]:
+def loop_settings(
+    config: Any, measured: Mapping[str, float] | None = None
+) -> list[tuple[str, str, float]]:
     """Part, name and value of every field of saddle_joint_loop_default() for a
-    saddle_config_t, in the order of a controller's settings.
+    saddle_config_t, in the order of a controller's settings. measured: fields of the legs.
     """
     lib, body = library(), (config.body_height_m, config.body_mass_kg)
     segments = ffi().new("saddle_legs_t *", lib.saddle_legs_default(*body))
@@ -58,7 +60,9 @@ def loop_settings(config: Any) -> list[tuple[str, str, float]]:
         index = 0
         while (field := field_at(index)) != ffi().NULL:
             place = ffi().cast("float *", ffi().cast("char *", values) + field.offset)
-            settings.append((part, ffi().string(field.name).decode(), place[0]))
+            name = ffi().string(field.name).decode()
+            given = (measured or {}).get(name) if part == "legs" else None
+            settings.append((part, name, place[0] if given is None else given))
             index += 1
     return settings
 

@@ -33,6 +33,37 @@ def test_a_body_on_can_walks_and_stops(capsys):
     assert "0 with the fallback, 0 with a fault of the sensors" in printed
 
 
+def test_measured_legs_are_those_of_the_body_and_of_the_firmware(tmp_path, capsys):
+    """Longer shanks, shorter thighs: with average ones for the firmware alone it would fall."""
+    person = tmp_path / "person.toml"
+    person.write_text("[legs]\nthigh_m = 0.39\nshank_m = 0.49\nfoot_length_m = 0.29\n")
+    options = ["chain", "--distance", "1", "--rate", "250", "--config", str(person)]
+    assert main(options) == 0
+    assert "stands at the end" in capsys.readouterr().out
+    walk = joint_chain.walk(
+        joint_campaign.FaultyFirmware(body(), [], np.random.default_rng(1)),
+        body(),
+        joint_chain.Course(0.8, 1.0, 250, legs={"thigh_m": 0.39, "shank_m": 0.52}),
+    )
+    assert walk.fell
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[legs]\ntigh_m = 0.4", "[legs]: tigh_m is not a field of saddle_legs_t"),
+        ("[legs]\nthigh_m = 4", "[legs]: thigh_m = 4 must be in 0.1 to 0.8"),
+        ("[legs]\nthigh_m = 'long'", "[legs]: thigh_m = 'long' must be in 0.1 to 0.8"),
+        ("legs = 0.4", "legs = 0.4 must be a table"),
+    ],
+)
+def test_legs_that_are_wrong_are_named(text, words, tmp_path, capsys):
+    person = tmp_path / "person.toml"
+    person.write_text(text)
+    assert main(["chain", "--config", str(person)]) == 2
+    assert words in capsys.readouterr().err
+
+
 def test_a_fall_is_told(monkeypatch, capsys):
     """Of a body whose drives do nothing."""
     idle = lambda plant, _: np.zeros(plant.model.nu)  # noqa: E731

@@ -2,10 +2,10 @@
 
 import argparse
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from saddlewalk.config import add_body_options, host_arguments, load_config
+from saddlewalk.config import add_body_options, given_legs, host_arguments, load_config
 from saddlewalk.errors import UserError
 from saddlewalk.options import (
     JOINTS,
@@ -79,11 +79,12 @@ def run(args: argparse.Namespace) -> int:
     config = load_config(args, body=chosen_plant(args).fields)
     if args.pushes:
         return _pushed(args, config)
-    course = Course(args.speed, args.distance, args.rate, args.seed)
+    measured = given_legs(args)
+    course = Course(args.speed, args.distance, args.rate, args.seed, legs=measured)
     outcomes: list[Outcome] = []
     for firmware in (HOST, EMULATED) if args.firmware == BOTH else (args.firmware,):
         running = _host if firmware == HOST else _controller
-        with running(config, args.rate) as bus:
+        with running(config, args.rate, measured) as bus:
             outcomes.append(walk(bus, config, course))
         print(f"{firmware}: {_words(outcomes[-1])}", flush=True)
     same = len({(outcome.digest, outcome.distance_m) for outcome in outcomes}) == 1
@@ -123,19 +124,20 @@ def _words(outcome: "Outcome") -> str:
 
 
 @contextlib.contextmanager
-def _host(config: Any, rate_hz: int) -> "Iterator[FrameBus]":
+def _host(config: Any, rate_hz: int, measured: "Mapping[str, float]") -> "Iterator[FrameBus]":
     from saddlewalk.emulation.host import running_host
     from saddlewalk.transport.bus import open_bus
 
     options = ["--lcm=none", "--clock=lockstep", f"--joints={rate_hz}", *host_arguments(config)]
+    options += [f"--joint=legs.{name}={value:.9g}" for name, value in measured.items()]
     with open_bus("udp") as bus, running_host("--can=udp", *options):
         yield bus
 
 
 @contextlib.contextmanager
-def _controller(config: Any, rate_hz: int) -> "Iterator[FrameBus]":
+def _controller(config: Any, rate_hz: int, measured: "Mapping[str, float]") -> "Iterator[FrameBus]":
     from saddlewalk.emulation.qemu import running_controller
 
-    with running_controller(config, joints_hz=rate_hz) as controller:
+    with running_controller(config, joints_hz=rate_hz, measured_legs=measured) as controller:
         yield controller.bus
     print(f"controller: {controller.words}")

@@ -9,7 +9,7 @@ import struct
 import subprocess
 import tempfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -37,11 +37,15 @@ class Controller:
 
 @contextlib.contextmanager
 def running_controller(
-    config: Any, clock: str = "lockstep", joints_hz: int = 0
+    config: Any,
+    clock: str = "lockstep",
+    joints_hz: int = 0,
+    measured_legs: Mapping[str, float] | None = None,
 ) -> Iterator[Controller]:
     """Starts it with a configuration; when the block ends, its bus is closed, which ends it.
 
-    joints_hz: as of saddlewalk-host --joints; 0: it is measured by CoM and feet.
+    joints_hz: as of saddlewalk-host --joints; 0: it is measured by CoM and feet. measured_legs:
+    fields of saddle_legs_t.
 
     Raises UserError if something is missing, or with its last line if it failed, whatever
     exception that caused in the block.
@@ -51,7 +55,7 @@ def running_controller(
     ours, theirs = socket.socketpair()
     with tempfile.TemporaryDirectory() as folder, theirs:
         page = Path(folder) / "settings"
-        page.write_bytes(settings_page(config, clock, joints_hz))
+        page.write_bytes(settings_page(config, clock, joints_hz, measured_legs))
         process = subprocess.Popen(
             _command(page, theirs.fileno()),
             pass_fds=[theirs.fileno()],
@@ -72,14 +76,19 @@ def running_controller(
                 raise UserError(f"{DESCRIPTION}: {words}")
 
 
-def settings_page(config: Any, clock: str, joints_hz: int = 0) -> bytes:
+def settings_page(
+    config: Any,
+    clock: str,
+    joints_hz: int = 0,
+    measured_legs: Mapping[str, float] | None = None,
+) -> bytes:
     """The page of flash with a saddle_config_t, as firmware/port_mcu/settings.h lays it down."""
     from saddlewalk.contract import TICK_S
     from saddlewalk.core import field_ranges
     from saddlewalk.joints import loop_settings
 
     fields = [(name, getattr(config, name)) for name in field_ranges()]
-    fields += [(name, value) for _, name, value in loop_settings(config)]
+    fields += [(name, value) for _, name, value in loop_settings(config, measured_legs)]
     names = b"".join(name.encode() + b"\0" for name, _ in fields)
     head = (clock == "lockstep", config.ankle, round(joints_hz * TICK_S))
     values = struct.pack(f"<3I{len(fields)}f", *head, *(value for _, value in fields))

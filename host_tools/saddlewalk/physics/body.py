@@ -2,7 +2,8 @@
 
 import functools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
 import mujoco
@@ -98,32 +99,63 @@ class Body:
         return float(self.model.body_mass.sum())
 
 
-def winter(height_m: float, mass_kg: float) -> Body:
-    """A person of average proportions; the upper body is one segment."""
+@dataclass(frozen=True)
+class LegLengths:
+    """By the names of saddle_legs_t."""
+
+    thigh_m: float
+    shank_m: float
+    ankle_height_m: float
+    hip_half_width_m: float
+    foot_length_m: float
+    ankle_to_middle_m: float
+    foot_width_m: float
+
+    @classmethod
+    def of(cls, height_m: float, measured: Mapping[str, float]) -> "LegLengths":
+        """Average ones; what was measured takes their place."""
+        average = cls(
+            THIGH_LENGTH * height_m,
+            SHANK_LENGTH * height_m,
+            ANKLE_HEIGHT * height_m,
+            HIP_HALF_WIDTH * height_m,
+            FOOT_LENGTH * height_m,
+            ANKLE_BEHIND * (FOOT_LENGTH * height_m),
+            FOOT_WIDTH * height_m,
+        )
+        known = {name: value for name, value in measured.items() if hasattr(average, name)}
+        return replace(average, **known)
+
+
+def winter(
+    height_m: float, mass_kg: float, legs: Mapping[str, float] = MappingProxyType({})
+) -> Body:
+    """A person of average proportions; the upper body is one segment.
+
+    legs: measured lengths, by the names of saddle_legs_t, in place of the average ones.
+    """
     spec = new_world()
-    thigh_m, shank_m, ankle_m, trunk_m = (
-        share * height_m for share in (THIGH_LENGTH, SHANK_LENGTH, ANKLE_HEIGHT, TRUNK_LENGTH)
-    )
-    pelvis = spec.worldbody.add_body(name="pelvis", pos=(0, 0, thigh_m + shank_m + ankle_m))
+    lengths, trunk_m = LegLengths.of(height_m, legs), TRUNK_LENGTH * height_m
+    hips_m = lengths.thigh_m + lengths.shank_m + lengths.ankle_height_m
+    pelvis = spec.worldbody.add_body(name="pelvis", pos=(0, 0, hips_m))
     pelvis.add_freejoint()
     mass, com, gyration = UPPER_BODY
     inertia = mass * mass_kg * (gyration * trunk_m) ** 2
     _set_inertia(pelvis, mass * mass_kg, (0, 0, com * trunk_m), (inertia, inertia, inertia / 4))
     _add_shape(pelvis, mujoco.mjtGeom.mjGEOM_CAPSULE, (0.12,), (0, 0, 0.05), (0, 0, trunk_m))
     _add_shape(pelvis, mujoco.mjtGeom.mjGEOM_SPHERE, (0.1,), (0, 0, trunk_m + 0.22))
-    legs = tuple(_add_leg(pelvis, name, height_m, mass_kg) for name in SIDES)
+    both = tuple(_add_leg(pelvis, name, lengths, mass_kg) for name in SIDES)
     torques = {f"{side}_{name}": torque for side in SIDES for name, (*_, torque) in JOINTS.items()}
     model = compiled(spec, torques)
-    return Body("winter", model, "pelvis", (legs[0], legs[1]), 1.0, 0.040, 60.0)
+    return Body("winter", model, "pelvis", (both[0], both[1]), 1.0, 0.040, 60.0)
 
 
-def _add_leg(pelvis: Any, side: str, height_m: float, mass_kg: float) -> Leg:
-    thigh_m, shank_m = THIGH_LENGTH * height_m, SHANK_LENGTH * height_m
-    ankle_m, length_m, width_m = (
-        share * height_m for share in (ANKLE_HEIGHT, FOOT_LENGTH, FOOT_WIDTH)
-    )
+def _add_leg(pelvis: Any, side: str, lengths: LegLengths, mass_kg: float) -> Leg:
+    thigh_m, shank_m, ankle_m = lengths.thigh_m, lengths.shank_m, lengths.ankle_height_m
+    length_m, width_m = lengths.foot_length_m, lengths.foot_width_m
+
     outward = 1 if side == "left" else -1
-    hip_m = (0, outward * HIP_HALF_WIDTH * height_m, 0)
+    hip_m = (0, outward * lengths.hip_half_width_m, 0)
     thigh = _add_segment(pelvis, f"{side}_thigh", hip_m, thigh_m, (*THIGH, 0.15), mass_kg)
     shank = _add_segment(thigh, f"{side}_shank", (0, 0, -thigh_m), shank_m, (*SHANK, 0.1), mass_kg)
     foot = shank.add_body(name=f"{side}_foot", pos=(0, 0, -shank_m))
@@ -131,7 +163,7 @@ def _add_leg(pelvis: Any, side: str, height_m: float, mass_kg: float) -> Leg:
     _add_joints(shank, side, "knee")
     _add_joints(foot, side, "ankle_pitch ankle_roll")
 
-    ahead_m = ANKLE_BEHIND * length_m  # the middle of the foot, from the ankle
+    ahead_m = lengths.ankle_to_middle_m  # the middle of the foot, from the ankle
     share, _, gyration = FOOT
     inertia = share * mass_kg * (gyration * length_m) ** 2
     _set_inertia(

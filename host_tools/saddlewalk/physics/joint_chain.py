@@ -7,7 +7,8 @@ import hashlib
 import math
 import struct
 import time
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import can
@@ -50,6 +51,7 @@ class Course:
     seed: int = 0
     stopping_s: float = STOPPING_S  # from the command to stop to the end
     push: Push | None = None
+    legs: Mapping[str, float] = field(default_factory=dict)  # measured, of the body
 
     @property
     def stop_s(self) -> float:
@@ -84,7 +86,7 @@ class BusDevice:
     """
 
     def __init__(self, bus: FrameBus, plant: Plant, config: Any, course: Course) -> None:
-        imu = Estimator(legs(config.body_height_m, config.body_mass_kg)).config
+        imu = Estimator(legs(config.body_height_m, config.body_mass_kg, course.legs)).config
         imu_m = np.array([imu.imu_x_m, imu.imu_y_m, imu.imu_z_m])
         self._bus, self._course = bus, course
         self._sensors = ffi().new("saddle_sensors_t *")
@@ -179,7 +181,7 @@ def _vector(vector: Any) -> dict[str, float]:
 def walk(bus: FrameBus, config: Any, course: Course) -> Outcome:
     """From standing to standing; config: the firmware's saddle_config_t."""
     pendulum = Body.of(config)
-    plant = Plant(winter(config.body_height_m, config.body_mass_kg))
+    plant = Plant(winter(config.body_height_m, config.body_mass_kg, course.legs))
     left_m = 1j * config.step_width_slow_m / 2
     plant.stand((left_m, -left_m), np.array([0.0, 0.0, pendulum.pendulum_m]))
     plant.loads_n = [plant.body.mass_kg * GRAVITY_M_S2 / 2] * 2

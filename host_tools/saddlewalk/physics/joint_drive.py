@@ -119,11 +119,15 @@ class JointWearer(PhysicalWearer):
         right_ahead_m: float = 0.0,
         command_delay_s: float = 0.0,
         wrong: BodyErrors | None = None,
+        legs: Mapping[str, float] | None = None,
     ) -> None:
-        """config: the firmware's saddle_config_t; noise: of the point mass, not of this device."""
+        """config: the firmware's saddle_config_t; noise: of the point mass, not of this device;
+        legs: fields of saddle_legs_t that were measured.
+        """
         super().__init__(plant, config, noise, pushes, seed, takes_recovery_step, right_ahead_m)
         wrong = wrong or BodyErrors()
-        body = joints.legs(config.body_height_m, config.body_mass_kg * (1 + wrong.mass_share))
+        mass_kg = config.body_mass_kg * (1 + wrong.mass_share)
+        body = joints.legs(config.body_height_m, mass_kg, legs)
         body.thigh_m += wrong.leg_m / 2
         body.shank_m += wrong.leg_m / 2
         self._estimator = joints.Estimator(body)

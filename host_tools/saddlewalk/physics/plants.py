@@ -3,10 +3,11 @@
 import argparse
 import importlib.util
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
+from saddlewalk.config import given_legs
 from saddlewalk.emulation.wearer import Body, Noise, Push, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.lockstep_host import LockstepHost
@@ -24,6 +25,7 @@ class PlantChoice:
     torque_delay_s: float = 0.0  # of the joint commands where it drives joints
     mass_error: float = 0.0  # by which share firmware/joints believes the body heavier,
     leg_error_m: float = 0.0  # and its legs longer
+    legs: Mapping[str, float] = field(default_factory=dict)  # measured, of body and firmware/joints
 
     @property
     def is_mujoco(self) -> bool:
@@ -62,11 +64,13 @@ class PlantChoice:
         from saddlewalk.physics.wearer import PhysicalWearer
 
         if self.drives_joints:
+            from saddlewalk.physics.body import winter
             from saddlewalk.physics.joint_drive import BodyErrors, JointWearer
 
-            plant = Plant(BODIES[self.body].make(config))
+            plant = Plant(winter(config.body_height_m, config.body_mass_kg, self.legs))
             behaviour["command_delay_s"] = self.torque_delay_s
             behaviour["wrong"] = BodyErrors(self.mass_error, self.leg_error_m)
+            behaviour["legs"] = self.legs
             return JointWearer(plant, config, noise, pushes, seed, **behaviour)
         plant = Plant(BODIES[self.body].make(config), self.torque_delay_s)
         behaviour["sensor_delay_s"] = self.sensor_delay_s
@@ -88,6 +92,8 @@ def chosen_plant(args: argparse.Namespace) -> PlantChoice:
         if importlib.util.find_spec(package) is None:
             raise UserError(f"--plant {MUJOCO} needs {package}: {install_command('physics')}")
     choice = PlantChoice(args.body or WINTER, args.drive == JOINTS)
+    if choice.drives_joints:
+        choice = replace(choice, legs=given_legs(args))
     if choice.drives_joints and choice.body != WINTER:
         raise UserError(f"--drive {JOINTS}: only with the body {WINTER}, whose segments it knows")
     if choice.body != WINTER and (args.height, args.mass) != (None, None):
