@@ -48,6 +48,7 @@ def main() -> None:
             shutil.copy(playground, pages)
             with (pages / "index.md").open("a") as index:
                 index.write("\n[Open the playground](playground.html)\n")
+        shutil.copy(ROOT / "tools/site.css", pages)
         settings = Path(folder) / "mkdocs.yml"
         settings.write_text((ROOT / "tools/mkdocs.yml").read_text())
         mkdocs = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet"]
