@@ -28,6 +28,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = runpy.run_path(str(ROOT / "tools/package.py"))
 VERSION = PACKAGE["version"]()
 BIN = Path(sys.executable).parent
+TRIAL = os.environ.get("CI") == "true"
 
 
 def run(*words: str | Path, **options) -> str:
@@ -42,7 +43,7 @@ def check_tag() -> None:
     if changed:
         sys.exit(f"saddlewalk: release: commit or remove these first:\n{changed}")
     tags = run("git", "-C", ROOT, "tag", "--points-at", "HEAD").split()
-    if f"v{VERSION}" not in tags and os.environ.get("CI") != "true":
+    if f"v{VERSION}" not in tags and not TRIAL:
         sys.exit(f"saddlewalk: release: HEAD has no tag v{VERSION}: git tag v{VERSION}")
 
 
@@ -143,7 +144,10 @@ def made_of() -> str:
 def changes() -> str:
     """The changelog's newest section."""
     text = (ROOT / "CHANGELOG.md").read_text()
-    return re.search(r"^## .*?(?=^## |\Z)", text, re.MULTILINE | re.DOTALL)[0]
+    newest = re.search(r"^## .*?(?=^## |\Z)", text, re.MULTILINE | re.DOTALL)[0]
+    if not TRIAL and not newest.startswith(f"## {VERSION} ("):
+        sys.exit(f"saddlewalk: release: CHANGELOG.md begins with another section than {VERSION}'s")
+    return newest
 
 
 def main() -> None:

@@ -73,8 +73,10 @@ def walk(core) -> str:
 
 def test_the_core_has_the_bits_of_every_target(core, tmp_path):
     tests, wire = CHECKOUT / "tests/targets", CHECKOUT / "firmware/wire"
+    joints = CHECKOUT / "firmware/joints"
     version = re.match(r'VERSION "(\d+)"', (wire / "saddlewalk.dbc").read_text())[1]
-    folders = [core, core / "include", wire / "include", paths.built("firmware/wire/signals")]
+    folders = [core, core / "include", wire / "include", joints / "include"]
+    folders.append(paths.built("firmware/wire/signals"))
     compile_c(
         tmp_path / "same_bits",
         *("-std=c99", "-O2", "-ffp-contract=off", "-DSADDLE_ONE_FILE"),
@@ -135,4 +137,5 @@ def test_the_sbom_has_what_is_contained_and_what_is_installed():
 
 def test_the_changes_are_those_of_the_version():
     version = one("*.whl").name.split("-")[1]
-    assert (RELEASE / "CHANGES.md").read_text().startswith(f"## {version} (")
+    changes = (RELEASE / "CHANGES.md").read_text()
+    assert changes.startswith((f"## {version} (", "## Unreleased\n"))  # the latter in a trial
