@@ -1,5 +1,6 @@
 """From recorded states of a walker to the supervisor's scores, row by row."""
 
+import cmath
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -13,10 +14,16 @@ STATE_COLUMNS = (
     "t_s com_x_m com_y_m com_z_m com_vx_m_s com_vy_m_s left_x_m left_y_m right_x_m right_y_m "
     "left_contact right_contact"
 ).split()
+PELVIS_YAW = "pelvis_yaw_rad"  # a column of walks that turn
 SCORE_COLUMNS = (
     "t_s v_comp_m_s s_pend s_jump s_sw mos_com_m mos_xcom_m ebos_com_m ebos_xcom_m "
     "excess_stop_j excess_track_j can_stop on_track level flags recovery_margin_m margin"
 ).split()
+
+
+_PLANE = [  # vectors, as pairs of columns
+    (name, name.replace("x_m", "y_m")) for name in STATE_COLUMNS if "x_m" in name
+]
 
 
 def recording_core(config: Any) -> Core:
@@ -37,10 +44,12 @@ def scored_rows(
 
 
 def measurement_of(where: str, state: Mapping[str, float]) -> Measurement:
-    """The measurement in STATE_COLUMNS; a number that is not finite was not measured.
+    """The measurement in STATE_COLUMNS and, of a walk that turns, PELVIS_YAW; a number that is not
+    finite was not measured.
 
     Raises UserError, beginning with `where`, for a contact that is neither 0 nor 1.
     """
+    state = facing_forward(state)
     left_contact = _contact(where, state, "left_contact")
     right_contact = _contact(where, state, "right_contact")
     return Measurement(
@@ -51,6 +60,19 @@ def measurement_of(where: str, state: Mapping[str, float]) -> Measurement:
         left_contact=bool(left_contact),
         right_contact=bool(right_contact),
     )
+
+
+def facing_forward(state: Mapping[str, float]) -> Mapping[str, float]:
+    """A state in axes of the pelvis's heading, about the same origin."""
+    yaw_rad = state.get(PELVIS_YAW, 0.0)
+    if yaw_rad == 0:
+        return state
+    to_pelvis = cmath.rect(1.0, -yaw_rad) if math.isfinite(yaw_rad) else complex(math.nan, math.nan)
+    turned = dict(state)
+    for x, y in _PLANE:
+        vector = complex(state[x], state[y]) * to_pelvis
+        turned[x], turned[y] = vector.real, vector.imag
+    return turned
 
 
 def _known(x: float, y: float) -> tuple[float, float] | None:

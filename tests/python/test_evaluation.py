@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from saddlewalk.cli import main
+from saddlewalk.config import configuration
 from saddlewalk.core import ffi, library
 from saddlewalk.emulation.wearer import Body
 from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_margin_m
@@ -23,6 +24,7 @@ from saddlewalk.evaluation.walks import (
     SPEEDS_M_S,
     WARNING_MIN_S,
     WINDOWS,
+    Setting,
     Trial,
     Walk,
     course_of,
@@ -274,3 +276,17 @@ def test_a_bad_option_is_a_one_line_error(options, named, capsys):
     printed = capsys.readouterr().err
     assert status == 2
     assert printed.count("\n") == 1 and named in printed and options[0].strip("-") in printed
+
+
+def test_a_walk_that_turns_is_stable_until_it_is_pushed_over():
+    config, turning = configuration({}), Setting(turn_rad_s=0.3)
+    calm = Trial("recovery", -1, -1, 0.8, 0.0, 7.0, 0.0, 5)
+    pushed = replace(calm, index=0, kind="planned", direction_deg=90.0, impulse_n_s=60.0)
+    straight, bent = (run(calm, config, setting=each) for each in (Setting(), turning))
+    for course in (straight, bent):
+        assert math.isnan(course.fell_at_s)
+        assert set(course.ticks["level"]) == {library().SADDLE_LEVEL_STABLE}
+    sideways_m = [np.ptp(course.ticks["true_com_y_m"]) for course in (straight, bent)]
+    assert sideways_m[0] < 0.3 and sideways_m[1] > 3.0  # circles of 2.7 m
+    fall = evaluated_walk(pushed, run(pushed, config, setting=turning), None)
+    assert 7.0 < fall.alarm_at_s < fall.fell_at_s

@@ -87,6 +87,46 @@ def test_assumptions_and_implausible_values_are_reported(recorded, tmp_path, cap
     assert "millimetres.csv: step length 650 m is not a person's" in capsys.readouterr().err
 
 
+def test_a_walk_that_turns_is_scored_in_the_heading_of_its_pelvis(recorded, tmp_path, capsys):
+    """Turned more and more, about the CoM: in the axes of its pelvis nothing has changed."""
+    path = states_csv(tmp_path / "states.csv", load_walk(recorded["csv"]))
+    straight = supervised(capsys, path)
+    states = list(csv.DictReader(io.StringIO(Path(path).read_text())))
+    names = [*STATE_COLUMNS, "pelvis_yaw_rad"]
+    lines = [",".join(names)]
+    for state in states:
+        row = {name: float(text) for name, text in state.items()}
+        yaw_rad = row["pelvis_yaw_rad"] = 0.6 * row["t_s"] - 1.0
+        com_m = complex(row["com_x_m"], row["com_y_m"])
+        turn = np.exp(1j * yaw_rad)
+        for x, y, about_m in (
+            ("com_vx_m_s", "com_vy_m_s", 0j),
+            ("left_x_m", "left_y_m", com_m),
+            ("right_x_m", "right_y_m", com_m),
+        ):
+            vector = about_m + (complex(row[x], row[y]) - about_m) * turn
+            row[x], row[y] = float(vector.real), float(vector.imag)
+        lines.append(",".join(repr(row[name]) for name in names))
+    (tmp_path / "turned.csv").write_text("\n".join([*lines, ""]))
+    turned = supervised(capsys, str(tmp_path / "turned.csv"))
+    assert [row["level"] for row in turned] == [row["level"] for row in straight]
+    for name in NUMBERS:
+        assert np.allclose(column(turned, name), column(straight, name), atol=2e-4, equal_nan=True)
+
+
+def test_what_plan_writes_of_a_turn_is_supervised_in_its_heading(tmp_path, capsys):
+    schedule = tmp_path / "schedule.csv"
+    schedule.write_text("t_s,speed_m_s,turn_rad_s\n0,0.8,0\n2,0.8,0.3\n8,0.8,0\n14,0,0\n")
+    out = tmp_path / "plan.csv"
+    assert main(["plan", "--schedule", str(schedule), "--out", str(out)]) == 0
+    rows = supervised(capsys, str(out), "--speed", "0.8")
+    time_s, s_sw = column(rows, "t_s"), column(rows, "s_sw")
+    assert {row["level"] for row in rows} <= {"stable", "unknown"}
+    after = (time_s > 11) & (time_s < 14)  # straight on, at an angle of 1.8 rad
+    assert np.nanmin(column(rows, "mos_com_m")[after]) > -0.02
+    assert np.isfinite(s_sw[after]).all()
+
+
 def test_markers_are_named_for_every_command_that_reads_a_recording(recorded, tmp_path, capsys):
     Path(recorded["trc"]).write_text(Path(recorded["trc"]).read_text().replace("LHEE", "rear foot"))
     (tmp_path / "markers.toml").write_text('left_heel = ["rear foot"]\n')

@@ -86,6 +86,14 @@ def add_parser(subparsers: Any) -> None:
         help="how late the emulated wearer's measurements arrive: sensor_latency_s of it, and the "
         "rest as their age (default 0)",
     )
+    parser.add_argument(
+        "--turn",
+        type=number_in(0.0, 1.0, "rad/s"),
+        default=0.0,
+        metavar="RAD/S",
+        help="turning rate of the emulated walks, half of them to the left, as far as their speeds "
+        "bear it (default 0)",
+    )
     add_campaign_options(parser)
     add_plant_options(parser)
     add_input(
@@ -137,7 +145,9 @@ def run(args: argparse.Namespace) -> int:
     parts = []
     if args.walks or not args.falls:
         parts.append(
-            _emulate(console, args, Setting(plant, args.speeds, args.delay), config, trials)
+            _emulate(
+                console, args, Setting(plant, args.speeds, args.delay, args.turn), config, trials
+            )
         )
     if args.falls:
         parts.append(_score_falls(args))

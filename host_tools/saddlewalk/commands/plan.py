@@ -16,7 +16,7 @@ from saddlewalk.outputs import OutputFile, add_output
 from saddlewalk.table import Cell, write_table
 
 EVENT_COLUMNS = "mode time_to_heel_strike_s time_to_toe_off_s event event_t_s".split()
-TURN_COLUMNS = "heading_rad left_yaw_rad right_yaw_rad".split()
+TURN_COLUMNS = "heading_rad left_yaw_rad right_yaw_rad pelvis_yaw_rad".split()
 SHORTEST_DT_S = 1e-5
 
 
@@ -185,4 +185,5 @@ def _schedule_row(core: Any, instant: Any) -> list[Cell]:
         " ".join(f"{event.t_s:.6f}" for event in instant.events),
         plan.heading_rad,
         *yaws_of(plan),
+        plan.heading_rad + plan.pelvis_yaw_rad,
     ]

@@ -17,6 +17,7 @@ columns of states, in any order; an empty cell is a missing measurement:
   left_x_m left_y_m right_x_m right_y_m
                              middles of the soles
   left_contact right_contact 1: on the ground; 0: in the air
+  pelvis_yaw_rad             heading of the pelvis, to the left of x; may be left out
 
 columns of the result; an empty cell is a missing result:
   t_s                        time

@@ -23,7 +23,7 @@ from saddlewalk.evaluation.baselines import half_foot_m, hof_margin_m, hull_marg
 from saddlewalk.evaluation.emulated import TickRecorder
 from saddlewalk.evaluation.scoring import Announced, Score, one_tick_late, score
 from saddlewalk.physics.plants import POINT_MASS, PlantChoice
-from saddlewalk.planning.schedule import schedule_of
+from saddlewalk.planning.schedule import Speeds, schedule_of
 from saddlewalk.workers import Workers, run_tasks
 
 KINDS = ("planned", "recovery")
@@ -49,7 +49,7 @@ WINDOWS = ("to the fall", "to 0.24 s before", "first 0.4 s")
 HEEL_STRIKE_RAD = math.radians(10)
 CALM_SHARE = 0.1  # walks without a push, as a share of those with one
 EXACT_SENSORS = Noise(position_m=0.0, velocity_m_s=0.0)
-START_S, STOP_S, CALM_S = 1.0, 25.0, 30.0
+START_S, TURN_S, STOP_S, CALM_S = 1.0, 3.0, 25.0, 30.0
 
 FIELDS = (
     "time_s mode com_vx_m_s com_vy_m_s left_x_m left_y_m right_x_m right_y_m left_contact "
@@ -98,6 +98,7 @@ class Setting:
     plant: PlantChoice = POINT_MASS
     speeds_m_s: tuple[float, float] = SPEEDS_M_S
     delay_s: float = 0.0  # of every measurement
+    turn_rad_s: float = 0.0  # from TURN_S on, half of the walks to the left
 
 
 POINT_MASS_WALKS = Setting()
@@ -201,7 +202,9 @@ def run(
         takes_recovery_step=trial.kind == "recovery",
     )
     stop = [] if pushed else [(STOP_S, 0.0)]
-    speeds = [(0.0, 0.0), (START_S, trial.speed_m_s), *stop]
+    turn_rad_s = setting.turn_rad_s * (1 if trial.wearer_seed % 2 else -1)
+    turning = (TURN_S, trial.speed_m_s, turn_rad_s)
+    speeds: Speeds = [(0.0, 0.0), (START_S, trial.speed_m_s), turning, *stop]
     schedule = schedule_of(speeds, HEEL_STRIKE_RAD)
     end_s = trial.push_time_s + OBSERVED_S if pushed else CALM_S
     rows, witness = [], TickRecorder(config)

@@ -13,7 +13,7 @@ from saddlewalk.gait.measures import implausible
 from saddlewalk.gait.motion_capture import READERS, Markers, load_walk
 from saddlewalk.gait.recording import COLUMNS, Recording, recording_of
 from saddlewalk.printable import printable
-from saddlewalk.recorded_states import STATE_COLUMNS, measurement_of
+from saddlewalk.recorded_states import PELVIS_YAW, STATE_COLUMNS, measurement_of
 from saddlewalk.table import read_any_series
 
 State = Mapping[str, float]  # by STATE_COLUMNS; NaN: not measured
@@ -24,7 +24,15 @@ PLAN_COLUMNS = (*STATE_COLUMNS[:-2], "left_z_m", "right_z_m")  # of saddlewalk p
 DEMO_COLUMNS = tuple(  # in a demo's walk.csv: the wearer's true state
     name if name == "t_s" or name.endswith("contact") else f"true_{name}" for name in STATE_COLUMNS
 )
-LAYOUTS = (STATE_COLUMNS, PLAN_COLUMNS, DEMO_COLUMNS, COLUMNS)
+LAYOUTS = (
+    (*STATE_COLUMNS, PELVIS_YAW),
+    STATE_COLUMNS,
+    (*PLAN_COLUMNS, PELVIS_YAW),
+    PLAN_COLUMNS,
+    (*DEMO_COLUMNS, f"true_{PELVIS_YAW}"),
+    DEMO_COLUMNS,
+    COLUMNS,
+)
 
 
 def read_measurements(
@@ -78,7 +86,7 @@ def nothing_at(time_s: float) -> State:
 
 
 def _state(row: Mapping[str, float]) -> State:
-    """The state in a row of STATE_COLUMNS, PLAN_COLUMNS or DEMO_COLUMNS."""
+    """The state in a row of LAYOUTS but the last."""
     if "left_z_m" in row:
         on_ground = {
             f"{side}_contact": math.nan

@@ -44,7 +44,7 @@ COLUMNS = (
     + "true_com_vx_m_s true_com_vy_m_s true_cop_x_m true_cop_y_m left_contact right_contact".split()
     + "pushed_x_n_s pushed_y_n_s fallen".split()
     + "plan_left_yaw_rad plan_right_yaw_rad".split()
-    + "true_left_yaw_rad true_right_yaw_rad heading_rad".split()
+    + "true_left_yaw_rad true_right_yaw_rad true_pelvis_yaw_rad".split()
 )
 
 _SCORES = "S_PEND S_JUMP S_SW MOS_COM MOS_XCOM V_COMP GRAVITY_X GRAVITY_Y".split()

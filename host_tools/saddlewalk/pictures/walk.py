@@ -79,13 +79,13 @@ def seen_in(heading_rad: float, walk: Columns) -> Columns:
         x, y = f"{point}_x_m", f"{point}_y_m"
         places = (walk[x] + 1j * walk[y]) * to_heading
         turned |= {x: places.real, y: places.imag}
-    yaws = [name for name in walk if name.endswith("_yaw_rad") or name == "heading_rad"]
+    yaws = [name for name in walk if name.endswith("_yaw_rad")]
     return turned | {name: walk[name] - heading_rad for name in yaws}
 
 
 def heading_of(walk: Columns) -> float:
     """In the middle."""
-    return float(walk["heading_rad"][len(walk["t_s"]) // 2])
+    return float(walk["true_pelvis_yaw_rad"][len(walk["t_s"]) // 2])
 
 
 def until_fall(walk: Columns, fell_s: float | None) -> Columns:
@@ -157,7 +157,7 @@ def _forward_limits(walk: Columns) -> tuple[float, float]:
 
 def _forward_m_s(walk: Columns) -> np.ndarray:
     """Speed in the wearer's heading."""
-    heading_rad = walk["heading_rad"]
+    heading_rad = walk["true_pelvis_yaw_rad"]
     velocity = walk["true_com_vx_m_s"], walk["true_com_vy_m_s"]
     return velocity[0] * np.cos(heading_rad) + velocity[1] * np.sin(heading_rad)
 
@@ -213,7 +213,7 @@ def draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], config: Any) -
 
 def _bos(walk: Columns, index: int, config: Any) -> np.ndarray:
     """Base of support of the true feet, from the C core, in the wearer's heading."""
-    ahead = cmath.rect(1.0, walk["heading_rad"][index])
+    ahead = cmath.rect(1.0, walk["true_pelvis_yaw_rad"][index])
     cops = [
         complex(walk[f"true_{side}_x_m"][index], walk[f"true_{side}_y_m"][index]) / ahead
         for side, _ in FEET
@@ -275,7 +275,7 @@ def draw_arrow(axes: Axes, text: str, tail: complex, at: complex) -> None:
 def _draw_push(axes: Axes, walk: Columns, push: Push) -> None:
     index = int(np.argmin(np.abs(walk["t_s"] - push.time_s)))
     at = complex(walk["true_com_x_m"][index], walk["true_com_y_m"][index])
-    ahead = cmath.rect(1.0, walk["heading_rad"][index])
+    ahead = cmath.rect(1.0, walk["true_pelvis_yaw_rad"][index])
     tail = at - 0.4 * ahead * push.vector_n_s / abs(push.vector_n_s)
     draw_arrow(axes, f"push\n{push.impulse_n_s:.3g} N·s", tail, at)
 
