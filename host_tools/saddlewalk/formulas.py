@@ -6,7 +6,7 @@ from latex2mathml.converter import convert
 
 # Code, which stays; a formula; a symbol with an index, such as d_SW.
 _PARTS = re.compile(
-    r"`[^`\n]*`|\$(?P<formula>[^$\n]+)\$|\b(?P<symbol>[^\W\d_]{1,2})_(?P<index>[^\W_]+)\b"
+    r"`[^`\n]*`|\$(?P<formula>[^$\n]+)\$|\b(?P<symbol>[^\W\d_]{1,2})_(?P<index>[^\W_]+(?:,[a-z]+)?)\b"
 )
 
 

@@ -25,6 +25,7 @@ def test_each_equation_is_drawn():
     ("text", "html"),
     [
         ("at d_SW beyond", "at <i>d</i><sub>SW</sub> beyond"),
+        ("U_MoS,plan, at rest", "<i>U</i><sub>MoS,plan</sub>, at rest"),
         ("`d_h` and can_stop", "`d_h` and can_stop"),
         ("costs `a$b` $", "costs `a$b` $"),
     ],
