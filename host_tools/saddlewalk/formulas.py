@@ -17,7 +17,8 @@ def drawn(markdown: str) -> str:
 
 def _part(part: re.Match[str]) -> str:
     if part["formula"]:
-        return convert(part["formula"])
+        # All that it puts over a symbol are accents: dots, bars and tildes.
+        return convert(part["formula"]).replace("<mover>", '<mover accent="true">')
     if part["symbol"]:
         return f"<i>{part['symbol']}</i><sub>{part['index']}</sub>"
     return part[0]

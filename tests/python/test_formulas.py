@@ -7,13 +7,15 @@ import pytest
 from saddlewalk.formulas import drawn
 from saddlewalk.paths import CHECKOUT
 
-PAGE = (CHECKOUT / "docs/equations.md").read_text()
-IN_WORDS = {"E15", "E17", "E36"}  # an axis, a distance, the level of an old version
+PAGES = [CHECKOUT / "docs" / name for name in ("equations.md", "joints.md")]
+# An axis, a distance, the level of an old version; proportions, an iteration, rules.
+IN_WORDS = {"E15", "E17", "E36", "J1", "J8", "J15", "J24", "J25"}
 
 
-def test_each_equation_is_drawn():
-    rows = re.findall(r"^\| \[(E\d+)\] \| (.*?) \| ", PAGE, re.MULTILINE)
-    assert len(rows) > 40
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_each_equation_is_drawn(page):
+    rows = re.findall(r"^\| \[([EJ]\d+)\] \| (.*?) \| ", page.read_text(), re.MULTILINE)
+    assert len(rows) >= 25
     for tag, equation in rows:
         html = drawn(equation)
         assert ("<math" in html) == (tag not in IN_WORDS), tag
