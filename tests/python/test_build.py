@@ -44,9 +44,15 @@ def test_a_missing_product_is_named_with_the_command_that_makes_it(monkeypatch, 
         ("SPEED : 16|16@1-", "SPEED : 16|12@1-", "is signed with 12 bits: must be 16"),
         ("SPEED : 16|16@1-", "SPEED : 23|16@0-", "must be a little-endian integer"),
         ("VERSION : 48|8@1+ (1,0)", "VERSION : 48|8@1+ (2,0)", "unsigned with scale 2: must be 1"),
-        ("COUNTER : 8|4@1+", "COUNTER : 8|3@1+", "COMMAND_CODE must begin with CRC, 0|8, and COU"),
+        ("COUNTER : 8|4@1+", "COUNTER : 8|3@1+", "SENSED_GYRO must begin with CRC, 0|8, and COUN"),
         ('VAL_ 256 SPEED -32768 "NOT_AVAILABLE" ;', "", "signed without a word for -32768"),
         ("BO_ 273 MEASURED_LEFT: 8", "BO_ 273 MEASURED_LEFT: 7", "must be a classic frame of 8 b"),
+        (
+            "SG_ ROLL : 32|16@1- (0.0001,0)",
+            "SG_ ROLL : 32|16@1- (0.001,0)",
+            "as those of SENSED_LEFT",
+        ),
+        ("BO_ 150 JOINT_RIGHT", "BO_ 150 OTHER", "identifiers of JOINT_xxx must be one after the"),
     ],
 )
 def test_a_dbc_that_the_wire_cannot_pack_fails_the_build(now, then, message, tmp_path):

@@ -49,15 +49,6 @@ float saddle_frame_short_number(uint8_t raw, float scale)
     return whole == INT8_MIN ? NAN : (float)whole * scale;
 }
 
-uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length)
-{
-    uint32_t crc = 0xFFu;
-    for (size_t i = 0; i < length; ++i) {
-        crc = crc_after(crc, bytes[i]);
-    }
-    return (uint8_t)(crc ^ 0xFFu);
-}
-
 uint32_t saddle_frame_crc(uint32_t id_crc, uint64_t bits)
 {
     const uint32_t low = (uint32_t)bits, high = (uint32_t)(bits >> 32);

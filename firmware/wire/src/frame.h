@@ -2,9 +2,10 @@
 #ifndef SADDLEWALK_WIRE_FRAME_H
 #define SADDLEWALK_WIRE_FRAME_H
 
-#include <saddlewalk/wire.h>
-
 #include "wire_signals.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #define COUNTER_BITS 4u
 

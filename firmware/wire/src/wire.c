@@ -1,3 +1,5 @@
+#include <saddlewalk/wire.h>
+
 #include "frame.h"
 
 #define COUNTER_MASK 0x0Fu
@@ -25,6 +27,15 @@ static float seconds(uint32_t us)
 static uint32_t age_ms(uint32_t us)
 {
     return limited(us / 1000u, AGE_MAX_MS);
+}
+
+uint8_t saddle_wire_crc(const uint8_t *bytes, size_t length)
+{
+    uint32_t crc = 0xFFu;
+    for (size_t i = 0; i < length; ++i) {
+        crc = crc_after(crc, bytes[i]);
+    }
+    return (uint8_t)(crc ^ 0xFFu);
 }
 
 uint8_t saddle_wire_counter(const uint8_t data[SADDLE_WIRE_LENGTH])
