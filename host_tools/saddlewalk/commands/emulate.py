@@ -261,7 +261,7 @@ def summary(wearer: "Wearer", exoskeleton: Any) -> str:
     receiver = exoskeleton.reader.receiver
     fell = f"fell at {wearer.fell_at_s:.2f} s" if wearer.fallen else "did not fall"
     return (
-        f"walked {wearer.time_s:.1f} s, {wearer.com_m.real:.1f} m; {fell}; "
+        f"walked {wearer.time_s:.1f} s, to {abs(wearer.com_m):.1f} m from the start; {fell}; "
         f"{exoskeleton.ticks} ticks, {exoskeleton.frames_sent} frames sent, "
         f"{receiver.accepted} received, {receiver.rejected} rejected"
     )
