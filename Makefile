@@ -42,7 +42,7 @@ cross-compiler:
 
 test: build/build.ninja .venv/installed-test fmu ## every test that this machine can run in minutes
 	$(call run_tests,build,release,,$(MINUTES))
-	@echo "Left out, with targets of their own: test-exhaustive test-flood test-memory test-socketcan test-targets"
+	@echo "Left out, with targets of their own: test-exhaustive test-flood test-memory test-socketcan test-targets release"
 
 test-exhaustive: build/build.ninja .venv/installed-test ## the core's functions over every float
 	@$(BIN)/ninja -C build --quiet tests
