@@ -4,6 +4,7 @@
 #include <saddlewalk_balance_t.h>
 #include <saddlewalk_bos_t.h>
 #include <saddlewalk_config_t.h>
+#include <saddlewalk_ground_t.h>
 #include <saddlewalk_input_t.h>
 #include <saddlewalk_joints_t.h>
 #include <saddlewalk_plan_t.h>
@@ -263,6 +264,26 @@ bool saddle_lcm_decode_turn(const uint8_t *bytes, int size, saddle_input_t *inpu
         return false;
     }
     input->command.turn_rate_rad_s = message.turn_rate_rad_s;
+    return true;
+}
+
+int saddle_lcm_encode_ground(const saddle_input_t *input, uint8_t bytes[SADDLE_LCM_MESSAGE_MAX])
+{
+    const saddle_measured_foot_t *foot = input->measurement.foot;
+    const saddlewalk_ground_t message = {.utime_us = (int64_t)input->time_us,
+                                         .left_m_s = foot[SADDLE_LEFT].ground_m_s,
+                                         .right_m_s = foot[SADDLE_RIGHT].ground_m_s};
+    return saddlewalk_ground_t_encode(bytes, 0, SADDLE_LCM_MESSAGE_MAX, &message);
+}
+
+bool saddle_lcm_decode_ground(const uint8_t *bytes, int size, saddle_input_t *input)
+{
+    saddlewalk_ground_t message;
+    if (saddlewalk_ground_t_decode(bytes, 0, size, &message) != size) {
+        return false;
+    }
+    input->measurement.foot[SADDLE_LEFT].ground_m_s = message.left_m_s;
+    input->measurement.foot[SADDLE_RIGHT].ground_m_s = message.right_m_s;
     return true;
 }
 

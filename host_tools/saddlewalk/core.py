@@ -44,6 +44,8 @@ class Measurement:
     right_cop_m: tuple[float, float] | None = None
     left_contact: bool = False
     right_contact: bool = False
+    left_ground_m_s: float = 0.0  # of a treadmill's belt, negative as it runs backward
+    right_ground_m_s: float = 0.0
     age_us: int = 0
 
 
@@ -122,12 +124,13 @@ def _fill(target: Any, measurement: Measurement) -> None:
         com.height_m = measurement.com_height_m
         com.velocity_m_s.x, com.velocity_m_s.y = measurement.com_velocity_m_s
     feet = (
-        (measurement.left_cop_m, measurement.left_contact),
-        (measurement.right_cop_m, measurement.right_contact),
+        (measurement.left_cop_m, measurement.left_contact, measurement.left_ground_m_s),
+        (measurement.right_cop_m, measurement.right_contact, measurement.right_ground_m_s),
     )
-    for foot, (cop_m, contact) in zip(target.foot, feet, strict=True):
+    for foot, (cop_m, contact, ground_m_s) in zip(target.foot, feet, strict=True):
         foot.age_us = measurement.age_us if cop_m is not None else AGE_NEVER_US
         foot.contact = contact
+        foot.ground_m_s = ground_m_s
         if cop_m is not None:
             foot.cop_m.x, foot.cop_m.y = cop_m
 

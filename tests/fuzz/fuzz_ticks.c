@@ -86,13 +86,16 @@ static void patch(fuzz_bytes_t *bytes)
 {
     float *const numbers[] = {&input.command.speed_m_s,
                               &input.command.heel_strike_rad,
+                              &input.command.turn_rate_rad_s,
                               &input.measurement.com.height_m,
                               &input.measurement.com.velocity_m_s.x,
                               &input.measurement.com.velocity_m_s.y,
                               &input.measurement.foot[SADDLE_LEFT].cop_m.x,
                               &input.measurement.foot[SADDLE_LEFT].cop_m.y,
+                              &input.measurement.foot[SADDLE_LEFT].ground_m_s,
                               &input.measurement.foot[SADDLE_RIGHT].cop_m.x,
-                              &input.measurement.foot[SADDLE_RIGHT].cop_m.y};
+                              &input.measurement.foot[SADDLE_RIGHT].cop_m.y,
+                              &input.measurement.foot[SADDLE_RIGHT].ground_m_s};
     float *number = numbers[fuzz_byte(bytes) % (sizeof numbers / sizeof numbers[0])];
     fuzz_take(bytes, number, sizeof *number);
 }

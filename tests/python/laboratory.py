@@ -1,6 +1,7 @@
 """Walks of the core as a laboratory would have recorded them, and the files that it would write."""
 
 import functools
+import itertools
 
 import ezc3d
 import numpy as np
@@ -8,6 +9,8 @@ import numpy as np
 from saddlewalk.config import ANKLES, configuration
 from saddlewalk.core import Core
 from saddlewalk.gait.recording import Recording
+from saddlewalk.planning.schedule import SpeedChange
+from saddlewalk.planning.schedule import walk as scheduled
 from saddlewalk.planning.steady import walk as planned
 
 PERSON = {
@@ -45,19 +48,37 @@ def walk_of(fields: dict[str, float], speed_m_s: float, duration_s: float = 9.0)
 @functools.cache
 def recorded(fields: tuple, speed_m_s: float, duration_s: float) -> Recording:
     config = configuration({**dict(fields), "ankle": ANKLES["cycloid"]})
+    steady = planned(Core(config), speed_m_s, 10, 1 / RATE_HZ)
+    return recording_of(config, itertools.islice(steady, round(duration_s * RATE_HZ)))
+
+
+def walk_on_a_treadmill(duration_s: float) -> tuple[Recording, np.ndarray]:
+    """A walk from standing to standing over the ground, and how far the belt ran under it."""
+    config = configuration({"ankle": ANKLES["cycloid"]})
+    changes = [SpeedChange(0, 0.0, 0.0), SpeedChange(0, 4.0, 1.0), SpeedChange(0, 15.0, 0.0)]
+    belt_m_s = []
+
+    def outputs():
+        for instant in itertools.islice(
+            scheduled(Core(config), changes, 0.0, 1 / RATE_HZ), round(duration_s * RATE_HZ)
+        ):
+            belt_m_s.append(instant.output.plan.speed_m_s)
+            yield instant.t_s, instant.output
+
+    recording = recording_of(config, outputs())
+    return recording, np.cumsum(belt_m_s) / RATE_HZ
+
+
+def recording_of(config, outputs) -> Recording:
     com_m, foot_m = [], ([], [])
-    for _, (time_s, output) in zip(
-        range(round(duration_s * RATE_HZ)),
-        planned(Core(config), speed_m_s, 10, 1 / RATE_HZ),
-        strict=False,
-    ):
+    for time_s, output in outputs:
         plan, origin_m = output.plan, output.plan.origin_x_nm * 1e-9
         com_m.append((time_s, origin_m + plan.com_m.x, plan.com_m.y, plan.com_m.z))
         for side, foot in enumerate(plan.foot_m):
             foot_m[side].append((origin_m + foot.x, foot.y, foot.z))
     half_foot_m = np.array([config.cop_range_m, 0, 0])
     return Recording(
-        source=f"{speed_m_s} m/s",
+        source="a plan",
         time_s=np.array(com_m)[:, 0],
         com_m=np.array(com_m)[:, 1:],
         heel_m=np.array(foot_m) - half_foot_m,
@@ -65,9 +86,11 @@ def recorded(fields: tuple, speed_m_s: float, duration_s: float) -> Recording:
     )
 
 
-def laboratory(recording: Recording, rows: tuple, belt_m_s: float = 0.0) -> dict[str, np.ndarray]:
-    """Plug-in Gait markers, (n, 3) in mm and the laboratory's axes."""
-    back_m = np.outer(belt_m_s * recording.time_s, (1, 0, 0))
+def laboratory(
+    recording: Recording, rows: tuple, belt_m: float | np.ndarray = 0.0
+) -> dict[str, np.ndarray]:
+    """Plug-in Gait markers, (n, 3) in mm and the laboratory's axes; belt_m: its way so far."""
+    back_m = np.outer(belt_m * np.ones_like(recording.time_s), (1, 0, 0))
     aside_m, ahead_m = np.array([0, 0.12, 0]), np.array([0.09, 0, 0])
     points_m = {
         "Ann:LASI": recording.com_m + ahead_m + aside_m,

@@ -13,7 +13,16 @@ import tomllib
 import numpy as np
 import pytest
 
-from laboratory import LABORATORIES, PERSON, WRITERS, c3d_file, laboratory, trc_file, walk_of
+from laboratory import (
+    LABORATORIES,
+    PERSON,
+    WRITERS,
+    c3d_file,
+    laboratory,
+    trc_file,
+    walk_of,
+    walk_on_a_treadmill,
+)
 from saddlewalk.cli import main, parser
 from saddlewalk.config import configuration, host_arguments, load_config
 from saddlewalk.core import field_ranges
@@ -279,7 +288,9 @@ def test_sway_is_fitted_despite_drift_and_offset():
 @pytest.mark.parametrize("belt_m_s", [0.0, 1.0])
 def test_laboratory_file_is_the_walk_in_the_task_frame(kind, rows, belt_m_s, tmp_path):
     walk = walk_of(PERSON, 1.0)
-    source = WRITERS[kind](tmp_path / f"walk.{kind}", laboratory(walk, rows, belt_m_s))
+    source = WRITERS[kind](
+        tmp_path / f"walk.{kind}", laboratory(walk, rows, belt_m_s * walk.time_s)
+    )
     loaded = load_walk(source)
     origin_m = walk.com_m[0] * (1, 1, 0)
     along = walk.com_m[-1, :2] - walk.com_m[0, :2]
@@ -293,6 +304,20 @@ def test_laboratory_file_is_the_walk_in_the_task_frame(kind, rows, belt_m_s, tmp
         assert found == pytest.approx(true - origin_m, abs=tolerance_m)
     assert loaded.time_s == pytest.approx(walk.time_s - walk.time_s[0], abs=1e-4)
     assert ("treadmill at 1 m/s" in loaded.source) == bool(belt_m_s)
+
+
+def test_treadmill_that_starts_and_stops_is_a_walk_over_ground(tmp_path, capsys):
+    walk, belt_m = walk_on_a_treadmill(20.0)
+    rows = LABORATORIES["y up, walking along x"]
+    source = c3d_file(tmp_path / "walk.c3d", laboratory(walk, rows, belt_m))
+    loaded = load_walk(source)
+    assert "treadmill, up to 1 m/s" in loaded.source
+    # Over the ground as it is: a belt that changes its speed is known to 0.1 m/s for a second each.
+    walked_m = walk.com_m[-1, 0] - walk.com_m[0, 0]
+    assert loaded.com_m[-1, 0] == pytest.approx(walked_m, abs=0.2)
+    assert main(["replay", source]) == 0
+    lines = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
+    assert lines["unstable"] == lines["caution"] == "0 %"
 
 
 @pytest.mark.parametrize("kind", WRITERS)

@@ -29,6 +29,7 @@ from saddlewalk.logs.recorder import CHANNELS, COLUMNS
 from saddlewalk.paths import CHECKOUT
 from saddlewalk.transport.bus import open_bus, private_udp
 from saddlewalk.transport.lcm_log import LcmLog
+from saddlewalk.transport.wire import Receiver
 from saddlewalk.verdict import REASON_WORDS
 
 FILES = {"walk.lcmlog", "walk.candump.log", "walk.csv", "walk.png"}
@@ -153,6 +154,20 @@ def test_demo_in_lockstep_gives_the_same_bits_each_time(tmp_path, ports):
         (tmp_path / folder / "walk.csv").read_bytes() for folder in ("one", "two", "other")
     )
     assert one == two != other
+
+
+def test_who_walks_on_a_treadmill_is_judged_as_on_the_floor(tmp_path, ports):
+    """The measurements are rounded to 0.2 mm/s in another place."""
+    demo(tmp_path / "floor", ports, *WALK)
+    demo(tmp_path / "belt", ports, *WALK, "--treadmill")
+    for floor, belt in zip(rows(tmp_path / "floor"), rows(tmp_path / "belt"), strict=True):
+        assert floor["level"] == belt["level"]
+        assert float(floor["margin"]) == pytest.approx(float(belt["margin"]), abs=0.01)
+    with can.CanutilsLogReader(tmp_path / "belt" / "walk.candump.log") as log:
+        receiver = Receiver()
+        frames = [receiver.accept(frame) for frame in log]
+    belts = [signals["GROUND"] for name, signals in filter(None, frames) if name == "MEASURED_LEFT"]
+    assert min(belts) == pytest.approx(-1.2, abs=0.001) and belts[0] > -0.05
 
 
 def test_a_fall_is_reported_and_is_not_sound(tmp_path, ports, capsys, monkeypatch):

@@ -152,8 +152,8 @@ MEASURED = {
         "VX": "com.velocity_m_s.x",
         "VY": "com.velocity_m_s.y",
     },
-    "MEASURED_LEFT": {"X": "foot.0.cop_m.x", "Y": "foot.0.cop_m.y"},
-    "MEASURED_RIGHT": {"X": "foot.1.cop_m.x", "Y": "foot.1.cop_m.y"},
+    "MEASURED_LEFT": {"X": "foot.0.cop_m.x", "Y": "foot.0.cop_m.y", "GROUND": "foot.0.ground_m_s"},
+    "MEASURED_RIGHT": {"X": "foot.1.cop_m.x", "Y": "foot.1.cop_m.y", "GROUND": "foot.1.ground_m_s"},
 }
 JOINTS = "HIP_YAW HIP_ROLL HIP_PITCH KNEE ANKLE_PITCH ANKLE_ROLL".split()
 SIDES = ("LEFT", "RIGHT")

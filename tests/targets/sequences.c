@@ -76,6 +76,7 @@ static void spoil_input(sequence_t *sequence)
     for (int side = 0; side < 2; side++) {
         spoil(sequence, &input->measurement.foot[side].cop_m.x);
         spoil(sequence, &input->measurement.foot[side].cop_m.y);
+        spoil(sequence, &input->measurement.foot[side].ground_m_s);
         spoil_age(sequence, &input->measurement.foot[side].age_us);
         input->measurement.foot[side].contact ^= one_in(sequence, 16);
     }

@@ -20,7 +20,14 @@ void tearDown(void) {}
 
 static bool update_of(uint32_t faults, bool unstable)
 {
-    return saddle_safe_state_update(&state, model_of(&config), faults, unstable, DT_S);
+    const saddle_seen_t seen = {faults, unstable, false};
+    return saddle_safe_state_update(&state, model_of(&config), &seen, DT_S);
+}
+
+static bool update_under_a_stand(uint32_t faults)
+{
+    const saddle_seen_t seen = {faults, false, true};
+    return saddle_safe_state_update(&state, model_of(&config), &seen, DT_S);
 }
 
 static bool update(uint32_t faults)
@@ -139,6 +146,35 @@ static void test_without_a_resume_time_the_first_valid_tick_resumes(void)
     TEST_ASSERT_FALSE(update(0));
 }
 
+/* Whoever commands sends the same walk again and again: only a stand shows that somebody decided. */
+static void test_walk_that_waits_for_a_command_goes_on_after_a_stand(void)
+{
+    config.resume_by_command = 1.0f;
+    update_under_a_stand(0); /* one of before does not count */
+    update(SADDLE_FAULT_COM_STALE);
+    for (int tick = 0; tick < 100; tick++) {
+        TEST_ASSERT_TRUE(update(0));
+    }
+    TEST_ASSERT_FALSE(update_under_a_stand(0));
+    TEST_ASSERT_FALSE(update(0));
+    TEST_ASSERT_TRUE(update(SADDLE_FAULT_COM_STALE));
+    TEST_ASSERT_TRUE(update_under_a_stand(0));
+    for (int tick = 1; tick < 13; tick++) { /* and all has been good for resume_time_s */
+        TEST_ASSERT_EQUAL(tick < 12, update(0));
+    }
+}
+
+static void test_stand_that_is_stale_was_not_commanded(void)
+{
+    config.resume_by_command = 1.0f;
+    update(0);
+    update(SADDLE_FAULT_COM_STALE);
+    TEST_ASSERT_TRUE(update_under_a_stand(SADDLE_FAULT_COMMAND_STALE));
+    for (int tick = 0; tick < 100; tick++) {
+        TEST_ASSERT_TRUE(update(0));
+    }
+}
+
 /* A planner alone, as in a simulation: nothing was ever measured, so nothing is missed. */
 static void test_measurements_that_never_came_are_not_needed(void)
 {
@@ -224,6 +260,8 @@ int main(void)
     RUN_TEST(test_walk_resumes_after_valid_inputs_for_resume_time);
     RUN_TEST(test_resume_time_restarts_with_every_fault);
     RUN_TEST(test_without_a_resume_time_the_first_valid_tick_resumes);
+    RUN_TEST(test_walk_that_waits_for_a_command_goes_on_after_a_stand);
+    RUN_TEST(test_stand_that_is_stale_was_not_commanded);
     RUN_TEST(test_measurements_that_never_came_are_not_needed);
     RUN_TEST(test_measurement_of_which_a_part_never_came_stops);
     RUN_TEST(test_long_gap_between_the_ticks_stops);

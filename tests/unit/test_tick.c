@@ -388,6 +388,8 @@ static void random_feet(uint32_t *state, const saddle_plan_t *plan, void *feet)
     for (int side = 0; side < 2; side++) {
         any.foot[side].cop_m.x = random_float(state, 1.0f);
         any.foot[side].cop_m.y = random_float(state, 0.3f);
+        any.foot[side].ground_m_s =
+            random_bits(state) % 4u == 0u ? random_float(state, 2.0f) : 0.0f;
         any.foot[side].contact = near_plan || random_bits(state) % 2u != 0u;
         any.foot[side].age_us = near_plan ? 0u : random_age(state);
         if (near_plan) {
@@ -426,6 +428,7 @@ static void plausible_measurement(uint32_t *state, saddle_measurement_t *any)
     for (int side = 0; side < 2; side++) {
         any->foot[side].cop_m.x = plan->foot_m[side].x - plan->com_m.x;
         any->foot[side].cop_m.y = plan->foot_m[side].y - plan->com_m.y;
+        any->foot[side].ground_m_s = 0.0f;
         any->foot[side].contact = side == (int)plan->support || !(plan->speed_m_s > 0.0f);
         any->foot[side].age_us = 0;
     }
@@ -1104,6 +1107,104 @@ static void test_wearer_who_follows_the_plan_never_departs_from_it(void)
     TEST_ASSERT_TRUE(output.plan.step_count > 5u);
 }
 
+/* ---- a treadmill ---- */
+
+/* The same wearer on two belts; sensors in the room do not see what the belt under the foot that
+ * stands does. */
+static void put_on_belts(saddle_measurement_t *measured, float left_m_s, float right_m_s)
+{
+    const bool left = measured->foot[SADDLE_LEFT].contact;
+    const bool right = measured->foot[SADDLE_RIGHT].contact;
+    measured->foot[SADDLE_LEFT].ground_m_s = left_m_s;
+    measured->foot[SADDLE_RIGHT].ground_m_s = right_m_s;
+    measured->com.velocity_m_s.x += left == right ? 0.5f * (left_m_s + right_m_s)
+                                    : left        ? left_m_s
+                                                  : right_m_s;
+}
+
+/* 1e-5 m: the velocity is rounded once more. */
+static void assert_judged_as(const saddle_output_t *floor)
+{
+    TEST_ASSERT_EQUAL_HEX32(floor->faults, output.faults);
+    TEST_ASSERT_EQUAL_UINT8(floor->verdict.level, output.verdict.level);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5f, floor->scores.xcom_m.x, output.scores.xcom_m.x);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5f, floor->verdict.xcom_deviation_m.x,
+                             output.verdict.xcom_deviation_m.x);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5f, floor->scores.v_comp_m_s, output.scores.v_comp_m_s);
+}
+
+/* Belts that start, run at two speeds and stop, under a walk from standing to standing. */
+static void test_wearer_on_belts_is_judged_as_on_a_floor(void)
+{
+    uint64_t t = 0;
+    tick_at(t);
+    saddle_context_t on_belts = context;
+    for (int k = 0; k < 150; k++) {
+        input.command.speed_m_s = k < 100 ? 0.9f : 0.0f;
+        follow_until(&t, t + 1u);
+        const saddle_context_t on_floor = context;
+        const saddle_output_t floor = output;
+        const float belt_m_s = k < 20 ? -0.05f * (float)k : k < 110 ? -1.0f : 0.0f;
+        put_on_belts(&input.measurement, belt_m_s, 0.7f * belt_m_s);
+        context = on_belts;
+        TEST_ASSERT_EQUAL_INT(SADDLE_OK, tick_at(t));
+        assert_judged_as(&floor);
+        on_belts = context;
+        context = on_floor;
+        input.measurement.foot[0].ground_m_s = input.measurement.foot[1].ground_m_s = 0.0f;
+    }
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_MODE_STANDING, output.plan.mode);
+}
+
+/* What the input is for: the CoM of who walks on a belt rests in the room. */
+static void test_belt_that_is_not_measured_puts_the_xcom_behind_the_plan(void)
+{
+    const uint64_t t = walk_for_a_while() + 80000u;
+    const saddle_plan_t plan = plan_at(t);
+    measure_plan(&plan, &input.measurement);
+    put_on_belts(&input.measurement, -1.2f, -1.2f);
+    const saddle_context_t before = context;
+    tick_at(t);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5f, 0.0f, output.verdict.xcom_deviation_m.x);
+    context = before;
+    input.measurement.foot[0].ground_m_s = input.measurement.foot[1].ground_m_s = 0.0f;
+    tick_at(t);
+    TEST_ASSERT_FLOAT_WITHIN(1e-5f, -1.2f / context.model.body.natural_frequency_rad_s,
+                             output.verdict.xcom_deviation_m.x);
+}
+
+static void test_absurd_ground_is_a_fault_of_its_foot_and_of_the_com_that_it_carries(void)
+{
+    const float absurd[] = {NAN, INFINITY, -INFINITY, -15.0f, 1e30f};
+    for (size_t i = 0; i < COUNT_OF(absurd); i++) {
+        const uint64_t t = walk_for_a_while();
+        const saddle_plan_t plan = plan_at(t + 80000u);
+        measure_plan(&plan, &input.measurement);
+        input.measurement.foot[SADDLE_LEFT].contact = false;
+        input.measurement.foot[SADDLE_RIGHT].contact = true;
+        input.measurement.foot[SADDLE_LEFT].ground_m_s = absurd[i];
+        saddle_context_t before = context;
+        tick_at(t + 80000u);
+        TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_LEFT_RANGE, output.faults);
+        context = before;
+        input.measurement.foot[SADDLE_LEFT].contact = true;
+        tick_at(t + 80000u);
+        TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_LEFT_RANGE | SADDLE_FAULT_COM_RANGE, output.faults);
+    }
+}
+
+/* The numbers of a foot that never was measured mean nothing. */
+static void test_ground_under_a_foot_that_never_came_is_not_used(void)
+{
+    const uint64_t t = walk_for_a_while();
+    for (int side = 0; side < 2; side++) {
+        input.measurement.foot[side] = (saddle_measured_foot_t){
+            .contact = false, .ground_m_s = NAN, .age_us = SADDLE_AGE_NEVER_US};
+    }
+    tick_at(t + 80000u);
+    TEST_ASSERT_EQUAL_HEX32(SADDLE_FAULT_LEFT_STALE | SADDLE_FAULT_RIGHT_STALE, output.faults);
+}
+
 /* ---- [E45] the landing moves with the wearer ---- */
 
 /* A tick beyond the foot via point, of a wearer who keeps to the reference but goes faster by dv. */
@@ -1364,6 +1465,10 @@ int main(void)
     RUN_TEST(test_walk_resumes_only_after_valid_inputs_for_resume_time);
     RUN_TEST(test_gap_between_the_ticks_ends_the_level_and_the_walk);
     RUN_TEST(test_step_scores_end_with_the_com);
+    RUN_TEST(test_wearer_on_belts_is_judged_as_on_a_floor);
+    RUN_TEST(test_belt_that_is_not_measured_puts_the_xcom_behind_the_plan);
+    RUN_TEST(test_absurd_ground_is_a_fault_of_its_foot_and_of_the_com_that_it_carries);
+    RUN_TEST(test_ground_under_a_foot_that_never_came_is_not_used);
     RUN_TEST(test_landing_follows_what_the_ankles_can_mend_by_the_gain);
     RUN_TEST(test_wearer_is_judged_by_the_plan_that_was_not_moved);
     RUN_TEST(test_plan_at_takes_the_recovery_step);

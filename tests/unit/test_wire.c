@@ -192,7 +192,8 @@ static void test_decoding_leaves_ages_and_other_parts(void)
 {
     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
     const saddle_measurement_t sent = {
-        .foot = {{.cop_m = {-0.25f, 0.125f}, .contact = true}, {.cop_m = {0.5f, NAN}}}};
+        .foot = {{.cop_m = {-0.25f, 0.125f}, .ground_m_s = -1.2f, .contact = true},
+                 {.cop_m = {0.5f, NAN}, .ground_m_s = NAN}}};
     saddle_measurement_t received = {.com = {.height_m = 0.875f, .age_us = 11},
                                      .foot = {{.age_us = 22}, {.age_us = 33, .contact = true}}};
     saddle_wire_encode_measurement(&sent, 0, frames);
@@ -201,6 +202,8 @@ static void test_decoding_leaves_ages_and_other_parts(void)
     saddle_wire_decode_measured(SADDLE_WIRE_NONE, frames[0].data, &received);
     TEST_ASSERT_EQUAL_FLOAT(-0.25f, received.foot[SADDLE_LEFT].cop_m.x);
     TEST_ASSERT_TRUE(received.foot[SADDLE_LEFT].contact);
+    TEST_ASSERT_EQUAL_FLOAT(-1.2f, received.foot[SADDLE_LEFT].ground_m_s);
+    TEST_ASSERT_TRUE(isnan(received.foot[SADDLE_RIGHT].ground_m_s));
     TEST_ASSERT_EQUAL_FLOAT(0.5f, received.foot[SADDLE_RIGHT].cop_m.x);
     TEST_ASSERT_TRUE(isnan(received.foot[SADDLE_RIGHT].cop_m.y));
     TEST_ASSERT_FALSE(received.foot[SADDLE_RIGHT].contact);

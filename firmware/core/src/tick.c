@@ -105,12 +105,29 @@ static uint32_t take_command(saddle_context_t *context, const saddle_input_t *in
     return faults;
 }
 
-/* By what its sensors are late a measurement is older than its age says. */
+/* Of the ground that carries the wearer: under the one foot that stands, else midway. */
+static float ground_speed_m_s(const saddle_measurement_t *measured)
+{
+    float speed_m_s[2];
+    for (int side = 0; side < 2; side++) {
+        const saddle_measured_foot_t *foot = &measured->foot[side];
+        speed_m_s[side] = foot->age_us != SADDLE_AGE_NEVER_US ? foot->ground_m_s : 0.0f;
+    }
+    const bool left = measured->foot[SADDLE_LEFT].contact;
+    if (left != measured->foot[SADDLE_RIGHT].contact) {
+        return speed_m_s[left ? SADDLE_LEFT : SADDLE_RIGHT];
+    }
+    return 0.5f * (speed_m_s[SADDLE_LEFT] + speed_m_s[SADDLE_RIGHT]);
+}
+
+/* By what its sensors are late a measurement is older than its age says, and from here on the CoM's
+ * velocity is that over the ground. */
 static void take_measurement(const saddle_model_t *model, const saddle_measurement_t *measured,
                              saddle_measurement_t *sampled)
 {
     const uint32_t latency_us = model->body.latency_us;
     saddle_copy(sampled, measured, sizeof *sampled);
+    sampled->com.velocity_m_s.x -= ground_speed_m_s(measured);
     sampled->com.age_us = sum_us(measured->com.age_us, latency_us);
     for (int side = 0; side < 2; side++) {
         sampled->foot[side].age_us = sum_us(measured->foot[side].age_us, latency_us);
@@ -252,10 +269,14 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
         saddle_measurement_check(&context->plausibility, &context->model, &sampled,
                                  saddle_planner_speed_m_s(&context->planner), sensed.dt_s);
     output->faults = take_command(context, input);
-    const bool unstable = context->supervisor.level.level == (uint8_t)SADDLE_LEVEL_UNSTABLE;
+    const saddle_command_t *command = &context->command;
+    const saddle_seen_t seen = {
+        .faults = sensed.faults | output->faults,
+        .unstable = context->supervisor.level.level == (uint8_t)SADDLE_LEVEL_UNSTABLE,
+        .stands = command->mode == (uint8_t)SADDLE_COMMAND_STAND || !(command->speed_m_s > 0.0f),
+    };
     const bool stop =
-        saddle_safe_state_update(&context->safe_state, &context->model,
-                                 sensed.faults | output->faults, unstable, sensed.dt_s);
+        saddle_safe_state_update(&context->safe_state, &context->model, &seen, sensed.dt_s);
     plan_walk(context, &sensed, stop, dt_us, output);
     supervise(context, &sensed, output);
     move_landing(context, &output->plan);

@@ -242,6 +242,7 @@ static void decode_left(uint64_t bits, saddle_measurement_t *measurement)
 {
     measurement->foot[SADDLE_LEFT].cop_m.x = NUMBER_IN(MEASURED_LEFT_X, bits);
     measurement->foot[SADDLE_LEFT].cop_m.y = NUMBER_IN(MEASURED_LEFT_Y, bits);
+    measurement->foot[SADDLE_LEFT].ground_m_s = NUMBER_IN(MEASURED_LEFT_GROUND, bits);
     measurement->foot[SADDLE_LEFT].contact = CODE_IN(MEASURED_LEFT_CONTACT, bits) != 0u;
 }
 
@@ -249,6 +250,7 @@ static void decode_right(uint64_t bits, saddle_measurement_t *measurement)
 {
     measurement->foot[SADDLE_RIGHT].cop_m.x = NUMBER_IN(MEASURED_RIGHT_X, bits);
     measurement->foot[SADDLE_RIGHT].cop_m.y = NUMBER_IN(MEASURED_RIGHT_Y, bits);
+    measurement->foot[SADDLE_RIGHT].ground_m_s = NUMBER_IN(MEASURED_RIGHT_GROUND, bits);
     measurement->foot[SADDLE_RIGHT].contact = CODE_IN(MEASURED_RIGHT_CONTACT, bits) != 0u;
 }
 
@@ -543,12 +545,14 @@ void saddle_wire_encode_measurement(const saddle_measurement_t *measurement, uin
     ENCODE(&frames[1], MEASURED_LEFT, number,
            CODE(MEASURED_LEFT_ROUND, round) |
                CODE(MEASURED_LEFT_CONTACT, measurement->foot[SADDLE_LEFT].contact) |
-               NUMBER(MEASURED_LEFT_X, true, left_m.x) | NUMBER(MEASURED_LEFT_Y, true, left_m.y));
+               NUMBER(MEASURED_LEFT_X, true, left_m.x) | NUMBER(MEASURED_LEFT_Y, true, left_m.y) |
+               NUMBER(MEASURED_LEFT_GROUND, true, measurement->foot[SADDLE_LEFT].ground_m_s));
     ENCODE(&frames[2], MEASURED_RIGHT, number,
            CODE(MEASURED_RIGHT_ROUND, round) |
                CODE(MEASURED_RIGHT_CONTACT, measurement->foot[SADDLE_RIGHT].contact) |
                NUMBER(MEASURED_RIGHT_X, true, right_m.x) |
-               NUMBER(MEASURED_RIGHT_Y, true, right_m.y));
+               NUMBER(MEASURED_RIGHT_Y, true, right_m.y) |
+               NUMBER(MEASURED_RIGHT_GROUND, true, measurement->foot[SADDLE_RIGHT].ground_m_s));
 }
 
 void saddle_wire_require_auth(saddle_wire_receiver_t *receiver,

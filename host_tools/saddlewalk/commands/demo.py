@@ -17,6 +17,7 @@ from saddlewalk.commands.emulate import (
     events_printer,
     speeds_of,
     summary,
+    treadmill_of,
     wearer_of,
 )
 from saddlewalk.commands.view import add_view_options
@@ -179,6 +180,7 @@ def _walk(
                 *(bus, wearer, config, schedule, lcm, observers),
                 key=key,
                 joint_core=plant.joint_core(config),
+                treadmill=treadmill_of(args, config),
             )
             exoskeleton.run(args.clock, args.duration)
         stops = not page and schedule(args.duration).speed_m_s == 0

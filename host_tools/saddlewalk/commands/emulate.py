@@ -18,6 +18,7 @@ from saddlewalk.options import (
 from saddlewalk.outputs import add_input
 
 if TYPE_CHECKING:
+    from saddlewalk.emulation.treadmill import Treadmill
     from saddlewalk.emulation.wearer import Noise, Push, Wearer
     from saddlewalk.faults.scenario import Occurrence
     from saddlewalk.physics.plants import PlantChoice
@@ -91,6 +92,11 @@ def add_walk_options(
         + (f" (default {push})" if push else ""),
     )
     parser.add_argument(
+        "--treadmill",
+        action="store_true",
+        help="walk on a treadmill whose belt runs at the commanded speed; default: on a floor",
+    )
+    parser.add_argument(
         "--seed",
         type=whole_number_in(0, 2**32 - 1),
         default=0,
@@ -145,6 +151,7 @@ def run(args: argparse.Namespace) -> int:
             if_silent=start,
             key=key,
             joint_core=plant.joint_core(config),
+            treadmill=treadmill_of(args, config),
         )
         exoskeleton.run(args.clock, args.duration)
     print(summary(wearer, exoskeleton))
@@ -197,6 +204,13 @@ def wearer_of(
                 f"{args.duration:g} s"
             )
     return plant.wearer(config, noise, pushes, args.seed, right_ahead_m=RIGHT_AHEAD_M)
+
+
+def treadmill_of(args: argparse.Namespace, config: Any) -> "Treadmill | None":
+    """That of --treadmill, which speeds up as the walk does."""
+    from saddlewalk.emulation.treadmill import Treadmill
+
+    return Treadmill(config.acceleration_m_s2) if args.treadmill else None
 
 
 def speeds_of(args: argparse.Namespace, default: "Speeds") -> "Speeds":

@@ -16,6 +16,7 @@ from saddlewalk.contract import LEFT, RIGHT, STAND, STANDING, TICK_S, WALK
 from saddlewalk.emulation import plans
 from saddlewalk.emulation.paced_ticks import WAKE_UP_S, PacedTicks
 from saddlewalk.emulation.punctuality import Punctuality
+from saddlewalk.emulation.treadmill import Treadmill
 from saddlewalk.emulation.wearer import STEP_S, Measurement, Plan, PlanAt, Skeleton, Wearer
 from saddlewalk.errors import UserError
 from saddlewalk.lockstep_host import LockstepHost
@@ -118,6 +119,7 @@ class Exoskeleton:
     key: authenticates the commands, which then go by CAN alone.
     joint_core: of a controller that drives the joints between two ticks. It hears the same frames,
     so in lockstep it has the firmware's plan at every instant, and may do without the bus.
+    treadmill: the wearer walks on it; None: on a floor.
     """
 
     def __init__(
@@ -132,6 +134,7 @@ class Exoskeleton:
         if_silent: str = "",
         key: bytes | None = None,
         joint_core: LockstepHost | None = None,
+        treadmill: Treadmill | None = None,
     ) -> None:
         self.reader = TickReader()
         self.frames_sent = 0
@@ -147,6 +150,7 @@ class Exoskeleton:
         self._authenticator = None if key is None else Authenticator(key)
         self._own_core = core.Core(config)
         self._joint_core = joint_core
+        self._treadmill = treadmill
         self._codes_demanded = False
         self._begun = False
         self._ignored_ticks = 0  # number of successive ticks
@@ -330,12 +334,21 @@ class Exoskeleton:
         self._sets += 1
         for frame in self._time_frames(self._sets * every_s):
             self._send(frame)
-        velocity = measured.velocity_m_s
+        belt_m_s = self._belt_m_s(every_s)
+        velocity = measured.velocity_m_s + belt_m_s
         com = {"HEIGHT": measured.height_m, "VX": velocity.real, "VY": velocity.imag}
         self._send(self._sender.frame("MEASURED_COM", **com))
         for side, name in ((LEFT, "MEASURED_LEFT"), (RIGHT, "MEASURED_RIGHT")):
             foot, contact = measured.feet_m[side], measured.contact[side]
-            self._send(self._sender.frame(name, CONTACT=contact, X=foot.real, Y=foot.imag))
+            values = {"CONTACT": contact, "X": foot.real, "Y": foot.imag, "GROUND": belt_m_s}
+            self._send(self._sender.frame(name, **values))
+
+    def _belt_m_s(self, every_s: float) -> float:
+        if self._treadmill is None:
+            return 0.0
+        mode, speed_m_s, _ = self._command(self._wearer.time_s)
+        self._treadmill.run(speed_m_s if mode == WALK else 0.0, every_s)
+        return self._treadmill.belt_m_s
 
     def _command_in_real_time(self) -> None:
         """The command for the next tick."""

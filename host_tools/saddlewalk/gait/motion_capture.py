@@ -10,6 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
+from scipy.ndimage import median_filter
 
 from saddlewalk.errors import UserError
 from saddlewalk.gait.c3d_file import read_c3d
@@ -47,7 +49,9 @@ SIDE_FIRST = re.compile(r"(?P<side>left|right)(?P<place>.+)")
 SIDE_LAST = re.compile(r"(?![lr][._ -])(?P<place>.+)[._ -](?P<side>l|r|left|right)")
 
 WALKED_M = 1.0  # a shorter path means a treadmill, or no walk
-BELT_WINDOW_S = 0.1
+BELT_WINDOW_S, BELT_MEDIAN_S = 0.1, 1.0
+SHORTEST_BELT_S = 3.0  # a foot drawn back for less is no treadmill
+SAME_SPEED = 0.1  # a belt's speed that varies by less is one number
 SLOWEST_BELT_M_S = 0.1
 PELVIS_M = (0.25, 1.5)  # pelvis above the heels, from a child of two to the tallest adult
 
@@ -194,10 +198,11 @@ def _in_task_frame(
     com_m, heel_m, toe_m = (xyz_m @ to_task.T for xyz_m in (com_m, heel_m, toe_m))
     origin_m = com_m[np.isfinite(com_m).all(axis=1)][0] * (1, 1, 0)
     belt_m_s = _belt_speed(time_s, heel_m[..., 0])
-    way_m = np.stack([belt_m_s * (time_s - time_s[0]), 0 * time_s, 0 * time_s], axis=1) - origin_m
-    treadmill = f"treadmill at {belt_m_s:.3g} m/s" if belt_m_s else ""
+    walked_m = cumulative_trapezoid(belt_m_s, time_s, initial=0.0)
+    way_m = np.stack([walked_m, 0 * time_s, 0 * time_s], axis=1) - origin_m
+    notes = [Path(source).name, _treadmill(belt_m_s), *notes]
     return Recording(
-        source=printable(", ".join(filter(None, (Path(source).name, treadmill, *notes)))),
+        source=printable(", ".join(filter(None, notes))),
         time_s=time_s,
         com_m=com_m + way_m,
         heel_m=heel_m + way_m,
@@ -234,13 +239,36 @@ def _horizontal(vector: np.ndarray, up: np.ndarray) -> np.ndarray:
     return vector - vector @ up * up
 
 
-def _belt_speed(time_s: np.ndarray, heel_x_m: np.ndarray) -> float:
-    """The belt's speed: that of the foot that moves back fastest, in the median; 0 over ground."""
-    step = max(1, math.floor(BELT_WINDOW_S / float(np.median(np.diff(time_s)))))
+def _belt_speed(time_s: np.ndarray, heel_x_m: np.ndarray) -> np.ndarray:
+    """(n,) the belt's speed: that of the foot that moves back fastest, in the median of a second;
+    0 over ground.
+    """
+    still_m_s = np.zeros_like(time_s)
+    sample_s = float(np.median(np.diff(time_s)))
+    step = max(1, math.floor(BELT_WINDOW_S / sample_s))
     back_m_s = -(heel_x_m[:, step:] - heel_x_m[:, :-step]) / (time_s[step:] - time_s[:-step])
-    both = back_m_s[:, np.isfinite(back_m_s).all(axis=0)]
-    speed_m_s = float(np.median(both.max(axis=0))) if both.size else 0.0
-    return speed_m_s if speed_m_s > SLOWEST_BELT_M_S else 0.0
+    seen = np.flatnonzero(np.isfinite(back_m_s).all(axis=0))
+    if not len(seen):
+        return still_m_s
+    between_s = (time_s[step:] + time_s[:-step]) / 2
+    second = max(1, round(BELT_MEDIAN_S / sample_s))
+    speed_m_s = median_filter(back_m_s[:, seen].max(axis=0), second, mode="reflect")
+    moves = speed_m_s > SLOWEST_BELT_M_S
+    if moves.sum() * sample_s < min(SHORTEST_BELT_S, len(seen) * sample_s / 2):
+        return still_m_s
+    usual_m_s = np.median(speed_m_s[moves])
+    if np.abs(np.percentile(speed_m_s, (5, 95)) / usual_m_s - 1).max() < SAME_SPEED:
+        return still_m_s + usual_m_s
+    speed_m_s = np.interp(time_s, between_s[seen], speed_m_s)
+    return np.where(speed_m_s > SLOWEST_BELT_M_S, speed_m_s, 0.0)
+
+
+def _treadmill(belt_m_s: np.ndarray) -> str:
+    """What a reader of the recording is told of it."""
+    least, most = belt_m_s.min(), belt_m_s.max()
+    if not most:
+        return ""
+    return f"treadmill at {most:.3g} m/s" if least == most else f"treadmill, up to {most:.3g} m/s"
 
 
 def _sane(xyz_m: np.ndarray) -> np.ndarray:

@@ -23,6 +23,8 @@ TIME_MAX_US = 2**63 - 1  # of LCM's signed times
 GAPS_MAX = 20  # gaps that are listed separately
 # Channels that older firmware did not publish: a log without them is still complete.
 ADDED_CHANNELS = {"SADDLEWALK_BALANCE", "SADDLEWALK_WAY"}
+# What input_t does not have. Without them, as in older logs, the walk is straight and on a floor.
+ADDED_INPUTS = {"SADDLEWALK_TURN": "turn", "SADDLEWALK_GROUND": "ground"}
 HEALTH_FIELDS = ("tick", "status", "limits", "faults")  # the core's; the others are the host's
 _PACKED = {"float": ">f", "double": ">d", "int8_t": ">b", "int32_t": ">i", "int64_t": ">q"}
 
@@ -135,8 +137,8 @@ def logged_ticks(events: Iterable[Event]) -> Iterator[LoggedTick]:
                 yield tick
             tick, config = _begun(event, config), None
         elif tick and _utime_us(event) == tick.inputs.time_us:
-            if event.channel == "SADDLEWALK_TURN":
-                _add_turn(event, tick.inputs)
+            if event.channel in ADDED_INPUTS:
+                _add(event, tick.inputs)
             tick.outputs[event.channel] = event
     if tick:
         yield tick
@@ -158,11 +160,11 @@ def _begun(event: Event, config: Event | None) -> LoggedTick:
     return LoggedTick(number[0], inputs, None if config is None else decode(config))
 
 
-def _add_turn(event: Event, inputs: Any) -> None:
-    """Without it, as in older logs, the walk is straight."""
-    if not library().saddle_lcm_decode_turn(event.data, len(event.data), inputs):
+def _add(event: Event, inputs: Any) -> None:
+    name = ADDED_INPUTS[event.channel]
+    if not getattr(library(), f"saddle_lcm_decode_{name}")(event.data, len(event.data), inputs):
         raise UserError(
-            f"a message of {len(event.data)} bytes on SADDLEWALK_TURN is not a turn_t as "
+            f"a message of {len(event.data)} bytes on {event.channel} is not a {name}_t as "
             f"saddlewalk {__version__} has it"
         )
 

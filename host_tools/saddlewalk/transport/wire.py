@@ -111,7 +111,7 @@ _messages = [_Message(message) for message in _database.messages]
 _by_name = {message.name: message for message in _messages}
 _by_id = {message.id: message for message in _messages}
 _OWN = {"CRC", "COUNTER", "ROUND", "WIRE_VERSION"}
-_IF_MISSING: dict[str, float | None] = {"TURN_RATE": 0.0}
+_IF_MISSING: dict[str, float | None] = {"TURN_RATE": 0.0, "GROUND": 0.0}
 
 
 class Sender:
@@ -122,7 +122,8 @@ class Sender:
 
     def frame(self, name: str, **values: float | None) -> can.Message:
         """The next frame of a message, with every signal but CRC, COUNTER, ROUND and WIRE_VERSION
-        given; without TURN_RATE a COMMAND goes straight on.
+        given; without TURN_RATE a COMMAND goes straight on, and without GROUND a foot is on a
+        floor.
 
         Numbers in SI units and rad; None or not finite is sent as not available. Raises ValueError
         for a name that the database does not have or a signal that is missing or too many.

@@ -27,6 +27,7 @@ saddle_measurement_t saddle_no_measurement(void)
     none.com.age_us = SADDLE_AGE_NEVER_US;
     for (int side = 0; side < 2; side++) {
         none.foot[side].cop_m = zero;
+        none.foot[side].ground_m_s = 0.0f;
         none.foot[side].contact = false;
         none.foot[side].age_us = SADDLE_AGE_NEVER_US;
     }
@@ -64,7 +65,9 @@ static uint32_t check_foot(const saddle_model_t *model, const saddle_measurement
     if ((float)measurement->foot[side].age_us > model->body.foot_max_age_us) {
         return (uint32_t)(left ? SADDLE_FAULT_LEFT_STALE : SADDLE_FAULT_RIGHT_STALE);
     }
-    if (!vec2_within(measurement->foot[side].cop_m, COP_DISTANCE_MAX_M)) {
+    if (!vec2_within(measurement->foot[side].cop_m, COP_DISTANCE_MAX_M) ||
+        !saddle_in_range(measurement->foot[side].ground_m_s, -COM_SPEED_MAX_M_S,
+                         COM_SPEED_MAX_M_S)) {
         return (uint32_t)(left ? SADDLE_FAULT_LEFT_RANGE : SADDLE_FAULT_RIGHT_RANGE);
     }
     return 0;

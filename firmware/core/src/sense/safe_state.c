@@ -10,19 +10,27 @@ static const uint32_t LOST =
     (uint32_t)SADDLE_FAULT_LEFT_STALE | (uint32_t)SADDLE_FAULT_LEFT_FROZEN |
     (uint32_t)SADDLE_FAULT_RIGHT_STALE | (uint32_t)SADDLE_FAULT_RIGHT_FROZEN;
 
-bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_model_t *model,
-                              uint32_t faults, bool unstable, float dt_s)
+/* After a stop a walk that is to wait for a new command waits for a stand first. */
+static bool may_resume(const saddle_safe_state_t *state, const saddle_model_t *model)
 {
-    const bool commanded = (faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) == 0u;
-    const bool measured = (faults & UNUSABLE) == 0u;
-    state->armed = state->armed || (faults & STALE) != STALE;
+    return state->good_s >= model->config.resume_time_s &&
+           (state->stand_commanded || model->config.resume_by_command < 0.5f);
+}
+
+bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_model_t *model,
+                              const saddle_seen_t *seen, float dt_s)
+{
+    const bool commanded = (seen->faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) == 0u;
+    const bool measured = (seen->faults & UNUSABLE) == 0u;
+    state->armed = state->armed || (seen->faults & STALE) != STALE;
     state->lost_s = measured ? 0.0f : state->lost_s + dt_s;
-    const bool lost = (faults & LOST) != 0u || state->lost_s > model->config.com_max_age_s;
-    const bool good = commanded && !unstable && (measured || !state->armed);
+    const bool lost = (seen->faults & LOST) != 0u || state->lost_s > model->config.com_max_age_s;
+    const bool good = commanded && !seen->unstable && (measured || !state->armed);
     state->good_s = good ? state->good_s + dt_s : 0.0f;
+    state->stand_commanded = state->stopped && commanded && (state->stand_commanded || seen->stands);
     if (!commanded || (state->armed && lost)) {
         state->stopped = true;
-    } else if (good && state->good_s >= model->config.resume_time_s) {
+    } else if (good && may_resume(state, model)) {
         state->stopped = false;
     }
     return state->stopped && model->config.lost_inputs_stop > 0.5f;

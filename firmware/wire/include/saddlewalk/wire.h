@@ -39,8 +39,8 @@ extern "C" {
 
 #include <saddlewalk/cmac.h>
 
-/** Of a COMMAND that is accepted. Version 6 has no MEASURED_TIME and no ROUND, and 7 as well no TURN_RATE,
- *  whose byte is 0; both are the same else. */
+/** Of a COMMAND that is accepted. Version 6 has no MEASURED_TIME and no ROUND, and 7 as well no TURN_RATE
+ *  and no GROUND, whose bytes are 0; both are the same else. */
 #define SADDLE_WIRE_OLDEST_VERSION 6u
 
 /** Every frame is a classic CAN data frame of this many bytes with an 11-bit identifier. */

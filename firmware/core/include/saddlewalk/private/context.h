@@ -246,6 +246,7 @@ typedef struct {
     bool stopped; /**< inputs were lost, and have not been good for resume_time_s since */
     float lost_s; /**< since a measurement was last usable */
     float good_s; /**< since all that is needed is usable */
+    bool stand_commanded; /**< since the stop */
 } saddle_safe_state_t;
 
 /* ---- balance -------------------------------------------------------------------------------- */
