@@ -77,6 +77,19 @@ static uint32_t set_of(const saddle_inbox_t *inbox)
     return inbox->by_sensors ? SENSED_SET : MEASURED_SET;
 }
 
+/** When each foot came down or left the ground, to the time between two sets. */
+static void follow_contact(saddle_inbox_t *inbox, saddle_side_t side, bool was_in_contact,
+                           uint64_t sampled_us)
+{
+    saddle_measured_foot_t *foot = &inbox->input.measurement.foot[side];
+    uint64_t *from_us = &inbox->contact_from_us[side];
+    if (foot->contact != was_in_contact || *from_us == 0u || *from_us > sampled_us) {
+        *from_us = sampled_us;
+    }
+    const uint64_t since_us = sampled_us - *from_us;
+    foot->since_us = since_us < UINT32_MAX ? (uint32_t)since_us : UINT32_MAX;
+}
+
 static void take_measured(saddle_inbox_t *inbox, saddle_wire_message_t message, const uint8_t *data,
                           uint64_t time_us)
 {
@@ -90,8 +103,13 @@ static void take_measured(saddle_inbox_t *inbox, saddle_wire_message_t message, 
         ++inbox->frames_late;
         return;
     }
+    const saddle_side_t side = message == SADDLE_WIRE_MEASURED_LEFT ? SADDLE_LEFT : SADDLE_RIGHT;
+    const bool was_in_contact = inbox->input.measurement.foot[side].contact;
     saddle_wire_decode_measured(message, data, &inbox->input.measurement);
     saddle_wire_decode_sensors(message, data, &inbox->sensors);
+    if (message == SADDLE_WIRE_MEASURED_LEFT || message == SADDLE_WIRE_MEASURED_RIGHT) {
+        follow_contact(inbox, side, was_in_contact, age_from_us);
+    }
     note_age(inbox, message, age_from_us);
     if (counter != inbox->set_counter) {
         inbox->set = 0;

@@ -38,9 +38,10 @@ typedef struct {
     bool sender_clock;    /**< the last measurement's age counts from when it was sampled */
     uint32_t frames_late; /**< measured before what is held, or too long ago to know when */
     uint64_t age_from_us[SADDLE_WIRE_MESSAGE_COUNT]; /**< from when its age counts */
-    uint32_t frames_unused;                          /**< of the kind that by_sensors excludes */
-    uint32_t came;                                   /**< bits of the messages received so far */
-    uint32_t set; /**< bits of the messages with set_counter since the last read */
+    uint64_t contact_from_us[2]; /**< of each foot: when its contact was first what it is */
+    uint32_t frames_unused;      /**< of the kind that by_sensors excludes */
+    uint32_t came;               /**< bits of the messages received so far */
+    uint32_t set;                /**< bits of the messages with set_counter since the last read */
     uint8_t set_counter;
     uint32_t commands_applied;
     uint32_t commands_unusable; /**< unknown mode, non-finite number, or not a command_t */

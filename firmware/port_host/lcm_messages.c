@@ -4,7 +4,7 @@
 #include <saddlewalk_balance_t.h>
 #include <saddlewalk_bos_t.h>
 #include <saddlewalk_config_t.h>
-#include <saddlewalk_ground_t.h>
+#include <saddlewalk_feet_t.h>
 #include <saddlewalk_input_t.h>
 #include <saddlewalk_joints_t.h>
 #include <saddlewalk_plan_t.h>
@@ -267,23 +267,28 @@ bool saddle_lcm_decode_turn(const uint8_t *bytes, int size, saddle_input_t *inpu
     return true;
 }
 
-int saddle_lcm_encode_ground(const saddle_input_t *input, uint8_t bytes[SADDLE_LCM_MESSAGE_MAX])
+int saddle_lcm_encode_feet(const saddle_input_t *input, uint8_t bytes[SADDLE_LCM_MESSAGE_MAX])
 {
     const saddle_measured_foot_t *foot = input->measurement.foot;
-    const saddlewalk_ground_t message = {.utime_us = (int64_t)input->time_us,
-                                         .left_m_s = foot[SADDLE_LEFT].ground_m_s,
-                                         .right_m_s = foot[SADDLE_RIGHT].ground_m_s};
-    return saddlewalk_ground_t_encode(bytes, 0, SADDLE_LCM_MESSAGE_MAX, &message);
+    const saddlewalk_feet_t message = {.utime_us = (int64_t)input->time_us,
+                                       .left_ground_m_s = foot[SADDLE_LEFT].ground_m_s,
+                                       .left_since_us = foot[SADDLE_LEFT].since_us,
+                                       .right_ground_m_s = foot[SADDLE_RIGHT].ground_m_s,
+                                       .right_since_us = foot[SADDLE_RIGHT].since_us};
+    return saddlewalk_feet_t_encode(bytes, 0, SADDLE_LCM_MESSAGE_MAX, &message);
 }
 
-bool saddle_lcm_decode_ground(const uint8_t *bytes, int size, saddle_input_t *input)
+bool saddle_lcm_decode_feet(const uint8_t *bytes, int size, saddle_input_t *input)
 {
-    saddlewalk_ground_t message;
-    if (saddlewalk_ground_t_decode(bytes, 0, size, &message) != size) {
+    saddle_measured_foot_t *foot = input->measurement.foot;
+    saddlewalk_feet_t message;
+    if (saddlewalk_feet_t_decode(bytes, 0, size, &message) != size) {
         return false;
     }
-    input->measurement.foot[SADDLE_LEFT].ground_m_s = message.left_m_s;
-    input->measurement.foot[SADDLE_RIGHT].ground_m_s = message.right_m_s;
+    foot[SADDLE_LEFT].ground_m_s = message.left_ground_m_s;
+    foot[SADDLE_LEFT].since_us = (uint32_t)message.left_since_us;
+    foot[SADDLE_RIGHT].ground_m_s = message.right_ground_m_s;
+    foot[SADDLE_RIGHT].since_us = (uint32_t)message.right_since_us;
     return true;
 }
 

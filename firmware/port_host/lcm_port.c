@@ -68,8 +68,8 @@ void saddle_lcm_publish(saddle_lcm_port_t *port, const saddle_input_t *input,
     publish(port, "SADDLEWALK_INPUT", bytes, size);
     size = saddle_lcm_encode_turn(input, bytes);
     publish(port, "SADDLEWALK_TURN", bytes, size);
-    size = saddle_lcm_encode_ground(input, bytes);
-    publish(port, "SADDLEWALK_GROUND", bytes, size);
+    size = saddle_lcm_encode_feet(input, bytes);
+    publish(port, "SADDLEWALK_FEET", bytes, size);
     for (int part = 0; part < SADDLE_LCM_OUTPUTS; ++part) {
         size = saddle_lcm_encode_output((saddle_lcm_output_t)part, output, health->utime_us, bytes);
         publish(port, saddle_lcm_channel((saddle_lcm_output_t)part), bytes, size);

@@ -106,6 +106,7 @@ static void set_ages(fuzz_bytes_t *bytes)
     input.measurement.com.age_us = fuzz_word(bytes) >> fuzz_byte(bytes) % 32u;
     for (int side = 0; side < 2; ++side) {
         input.measurement.foot[side].age_us = fuzz_word(bytes) >> fuzz_byte(bytes) % 32u;
+        input.measurement.foot[side].since_us = fuzz_word(bytes) >> fuzz_byte(bytes) % 32u;
     }
 }
 

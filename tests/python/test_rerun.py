@@ -121,8 +121,8 @@ def test_every_field_of_an_input_is_logged_to_the_bit():
         assert library().saddle_lcm_decode_input(room, size, back, tick)
         turn_size = library().saddle_lcm_encode_turn(given, room)
         assert library().saddle_lcm_decode_turn(room, turn_size, back)
-        ground_size = library().saddle_lcm_encode_ground(given, room)
-        assert library().saddle_lcm_decode_ground(room, ground_size, back)
+        feet_size = library().saddle_lcm_encode_feet(given, room)
+        assert library().saddle_lcm_decode_feet(room, feet_size, back)
         assert leaves(back[0]) == leaves(given[0]) and tick[0] == number
     assert len(leaves(given[0])) >= 14
     assert not library().saddle_lcm_decode_turn(room, turn_size - 1, back)
@@ -219,7 +219,7 @@ def test_a_log_of_older_firmware_is_complete(walk, tmp_path, capsys):
     """Without any message of the channel. If there are some, the others were lost."""
     events = events_of(walk)
     there = [i for i, event in enumerate(events) if event.channel == "SADDLEWALK_BALANCE"]
-    added = ("SADDLEWALK_BALANCE", "SADDLEWALK_WAY", "SADDLEWALK_TURN", "SADDLEWALK_GROUND")
+    added = ("SADDLEWALK_BALANCE", "SADDLEWALK_WAY", "SADDLEWALK_TURN", "SADDLEWALK_FEET")
     older = [event for event in events if event.channel not in added]
     status, shown, _ = rerun(write_events(tmp_path / "older", older), capsys)
     assert status == 0 and f"all {TICKS * 5} recorded outputs are equal" in shown

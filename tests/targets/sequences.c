@@ -78,6 +78,7 @@ static void spoil_input(sequence_t *sequence)
         spoil(sequence, &input->measurement.foot[side].cop_m.y);
         spoil(sequence, &input->measurement.foot[side].ground_m_s);
         spoil_age(sequence, &input->measurement.foot[side].age_us);
+        spoil_age(sequence, &input->measurement.foot[side].since_us);
         input->measurement.foot[side].contact ^= one_in(sequence, 16);
     }
     if (one_in(sequence, 16)) {

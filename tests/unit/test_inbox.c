@@ -60,9 +60,12 @@ static void test_unusable_inputs_give_no_authority_and_no_age(void)
     expect_counts(1, 3, 0);
 }
 
+static bool left_contact;
+
 static void send_set(uint8_t counter, size_t frames_sent, uint64_t time_us)
 {
-    const saddle_measurement_t measurement = {.com.height_m = 1.0f};
+    const saddle_measurement_t measurement = {.com.height_m = 1.0f,
+                                              .foot[SADDLE_LEFT].contact = left_contact};
     saddle_frame_t frames[SADDLE_WIRE_MEASURED_FRAMES];
     saddle_wire_encode_measurement(&measurement, counter, frames);
     for (size_t i = 0; i < frames_sent; ++i) {
@@ -122,6 +125,24 @@ static void send_timed_set(uint8_t number, uint32_t sampled_us, uint64_t time_us
     saddle_wire_encode_time(sampled_us, number, &frame);
     saddle_inbox_take_frame(&inbox, frame.id, frame.data, sizeof frame.data, time_us);
     send_set(number, 3, time_us);
+}
+
+/** Sets every 10 ms between two ticks say when the foot came down. */
+static void test_contact_is_dated_within_the_tick(void)
+{
+    const uint32_t landed_set = 13;
+    for (uint8_t n = 0; n < 32; ++n) {
+        left_contact = n >= landed_set;
+        send_set(n, 3, 10000u * (n + 1u));
+        if (n % 8 == 7) {
+            const saddle_measured_foot_t *foot =
+                saddle_inbox_read(&inbox, 10000u * (n + 1u))->measurement.foot;
+            const uint32_t first = n < landed_set ? 0u : landed_set;
+            TEST_ASSERT_EQUAL_UINT32(10000u * (n - first), foot[SADDLE_LEFT].since_us);
+            TEST_ASSERT_EQUAL_UINT32(10000u * n, foot[SADDLE_RIGHT].since_us);
+        }
+    }
+    left_contact = false;
 }
 
 /** Held back for 0.3 s in the numbers' second round, with ticks between. */
@@ -303,6 +324,7 @@ int main(void)
     RUN_TEST(test_each_part_has_its_age);
     RUN_TEST(test_no_age_is_mistaken_for_never);
     RUN_TEST(test_a_set_is_of_one_instant_and_read_once);
+    RUN_TEST(test_contact_is_dated_within_the_tick);
     RUN_TEST(test_late_data_are_old_data);
     RUN_TEST(test_what_was_measured_before_what_is_held_is_not_taken);
     RUN_TEST(test_a_jump_of_our_own_clock_is_no_delay);

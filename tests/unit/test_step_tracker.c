@@ -218,6 +218,44 @@ static void test_v_comp_weighs_each_tick_by_its_time(void)
     TEST_ASSERT_DOUBLE_WITHIN(FLOAT_TOLERANCE, way / 0.27, tracker.v_comp_m_s);
 }
 
+/* Steps of 0.613 s at a speed that rises evenly, in ticks of 80 ms: the contact says when within the
+ * tick each heel struck. 1 ms and 1 mm/s: what a sum of a hundred float products may be off. */
+static void test_step_time_and_v_comp_are_exact_within_the_tick(void)
+{
+    const double step_s = 0.613;
+    int strikes = 0;
+    for (int tick = 0; tick < 100; tick++) {
+        const double time_s = 0.08 * tick;
+        const int steps = (int)(time_s / step_s);
+        const double into_s = time_s - steps * step_s;
+        measured.com.velocity_m_s.x = (float)(0.5 + 0.1 * time_s);
+        for (int side = 0; side < 2; side++) {
+            const bool landed_last = steps % 2 == side;
+            measured.foot[side].contact = landed_last || into_s < 0.1;
+            measured.foot[side].since_us =
+                landed_last ? (uint32_t)(1e6 * into_s) : (uint32_t)(1e6 * (into_s + step_s));
+        }
+        track();
+        if (tracker.struck && ++strikes > 1) {
+            const double mean_m_s = 0.5 + 0.1 * (steps - 0.5) * step_s;
+            TEST_ASSERT_FLOAT_WITHIN(1e-3f, (float)step_s, tracker.step_time_s);
+            TEST_ASSERT_FLOAT_WITHIN(1e-3f, (float)mean_m_s, tracker.v_comp_m_s);
+            TEST_ASSERT_FLOAT_WITHIN(1e-3f, (float)into_s, tracker.since_strike_s);
+        }
+    }
+    TEST_ASSERT_EQUAL_INT(12, strikes);
+}
+
+/* A sensor that claims more: the strike was in this tick, or the last would have seen it. */
+static void test_strike_is_no_longer_ago_than_the_last_tick(void)
+{
+    track();
+    measured.foot[SADDLE_LEFT].since_us = UINT32_MAX;
+    strike_with(SADDLE_LEFT);
+    TEST_ASSERT_EQUAL_FLOAT(DT_S, tracker.since_strike_s);
+    TEST_ASSERT_EQUAL_FLOAT(DT_S, tracker.step_duration_s);
+}
+
 static void test_step_with_a_gap_in_the_velocity_gives_no_v_comp(void)
 {
     const uint32_t faults[] = {SADDLE_FAULT_COM_STALE, SADDLE_FAULT_COM_RANGE,
@@ -467,6 +505,8 @@ int main(void)
     RUN_TEST(test_strike_during_an_outage_is_seen_when_the_foot_is_back);
     RUN_TEST(test_v_comp_is_the_mean_from_one_heel_strike_to_the_next);
     RUN_TEST(test_v_comp_weighs_each_tick_by_its_time);
+    RUN_TEST(test_step_time_and_v_comp_are_exact_within_the_tick);
+    RUN_TEST(test_strike_is_no_longer_ago_than_the_last_tick);
     RUN_TEST(test_step_with_a_gap_in_the_velocity_gives_no_v_comp);
     RUN_TEST(test_step_that_begins_without_a_velocity_gives_no_v_comp);
     RUN_TEST(test_step_over_a_gap_between_the_ticks_gives_no_v_comp);

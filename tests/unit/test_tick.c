@@ -390,6 +390,7 @@ static void random_feet(uint32_t *state, const saddle_plan_t *plan, void *feet)
         any.foot[side].cop_m.y = random_float(state, 0.3f);
         any.foot[side].ground_m_s =
             random_bits(state) % 4u == 0u ? random_float(state, 2.0f) : 0.0f;
+        any.foot[side].since_us = random_age(state);
         any.foot[side].contact = near_plan || random_bits(state) % 2u != 0u;
         any.foot[side].age_us = near_plan ? 0u : random_age(state);
         if (near_plan) {
@@ -429,6 +430,7 @@ static void plausible_measurement(uint32_t *state, saddle_measurement_t *any)
         any->foot[side].cop_m.x = plan->foot_m[side].x - plan->com_m.x;
         any->foot[side].cop_m.y = plan->foot_m[side].y - plan->com_m.y;
         any->foot[side].ground_m_s = 0.0f;
+        any->foot[side].since_us = 0;
         any->foot[side].contact = side == (int)plan->support || !(plan->speed_m_s > 0.0f);
         any->foot[side].age_us = 0;
     }

@@ -25,7 +25,7 @@ from saddlewalk.transport.lcmbus import listen, receive
 LCM_CHANNELS = "SADDLEWALK_.*"
 LCM_QUEUE = 2000
 LAST_WORDS_S = 0.2  # for messages that are still in transit at the end
-_PARTS = "CONFIG INPUT TURN GROUND PLAN SCORES VERDICT BALANCE BOS WAY HEALTH STATUS TRUTH"
+_PARTS = "CONFIG INPUT TURN FEET PLAN SCORES VERDICT BALANCE BOS WAY HEALTH STATUS TRUTH"
 CHANNELS = tuple(f"SADDLEWALK_{part}" for part in _PARTS.split())
 
 _POINTS = "com_x_m com_y_m com_z_m left_x_m left_y_m left_z_m right_x_m right_y_m right_z_m".split()

@@ -24,7 +24,7 @@ GAPS_MAX = 20  # gaps that are listed separately
 # Channels that older firmware did not publish: a log without them is still complete.
 ADDED_CHANNELS = {"SADDLEWALK_BALANCE", "SADDLEWALK_WAY"}
 # What input_t does not have. Without them, as in older logs, the walk is straight and on a floor.
-ADDED_INPUTS = {"SADDLEWALK_TURN": "turn", "SADDLEWALK_GROUND": "ground"}
+ADDED_INPUTS = {"SADDLEWALK_TURN": "turn", "SADDLEWALK_FEET": "feet"}
 HEALTH_FIELDS = ("tick", "status", "limits", "faults")  # the core's; the others are the host's
 _PACKED = {"float": ">f", "double": ">d", "int8_t": ">b", "int32_t": ">i", "int64_t": ">q"}
 

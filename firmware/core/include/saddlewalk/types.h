@@ -179,10 +179,12 @@ typedef struct {
 /** A foot as measured. */
 typedef struct {
     saddle_vec2_t cop_m; /**< middle of the sole, relative to the CoM */
-    float ground_m_s;    /**< speed along x of the ground under it; of a treadmill's belt, negative as
-                              it runs backward; 0: a floor */
-    bool contact;        /**< on the ground */
-    uint32_t age_us;     /**< at the time of the tick, or SADDLE_AGE_NEVER_US */
+    float ground_m_s;  /**< speed along x of the ground under it; of a treadmill's belt, negative as
+                            it runs backward; 0: a floor */
+    bool contact;      /**< on the ground */
+    uint32_t since_us; /**< for how long contact had been so when it was measured; 0: not known, and
+                            it changed when it was measured */
+    uint32_t age_us;   /**< at the time of the tick, or SADDLE_AGE_NEVER_US */
 } saddle_measured_foot_t;
 
 /** Each foot and the CoM have their own age. The axes are those of the wearer's heading, which turn with

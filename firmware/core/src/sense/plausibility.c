@@ -29,6 +29,7 @@ saddle_measurement_t saddle_no_measurement(void)
         none.foot[side].cop_m = zero;
         none.foot[side].ground_m_s = 0.0f;
         none.foot[side].contact = false;
+        none.foot[side].since_us = 0;
         none.foot[side].age_us = SADDLE_AGE_NEVER_US;
     }
     return none;

@@ -27,7 +27,8 @@ bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_model_t *
     const bool lost = (seen->faults & LOST) != 0u || state->lost_s > model->config.com_max_age_s;
     const bool good = commanded && !seen->unstable && (measured || !state->armed);
     state->good_s = good ? state->good_s + dt_s : 0.0f;
-    state->stand_commanded = state->stopped && commanded && (state->stand_commanded || seen->stands);
+    state->stand_commanded =
+        state->stopped && commanded && (state->stand_commanded || seen->stands);
     if (!commanded || (state->armed && lost)) {
         state->stopped = true;
     } else if (good && may_resume(state, model)) {

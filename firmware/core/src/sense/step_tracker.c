@@ -24,21 +24,23 @@ static bool heel_strike(saddle_step_tracker_t *tracker, const saddle_measurement
     return swung;
 }
 
-/* v_CoMp: the velocity integrated by the trapezoidal rule from one heel strike to the next. */
+/* v_CoMp: the velocity integrated by the trapezoidal rule over a step. */
 static void follow_speed(saddle_step_tracker_t *tracker, bool velocity_known, float velocity_m_s,
-                         float dt_s, bool strike)
+                         float time_s)
 {
     tracker->step_open = tracker->step_open && velocity_known;
     if (tracker->step_open) {
-        tracker->step_distance_m += 0.5f * dt_s * (tracker->last_velocity_m_s + velocity_m_s);
-        tracker->step_duration_s += dt_s;
+        tracker->step_distance_m += 0.5f * time_s * (tracker->last_velocity_m_s + velocity_m_s);
+        tracker->step_duration_s += time_s;
     }
     if (velocity_known) {
         tracker->last_velocity_m_s = velocity_m_s;
     }
-    if (!strike) {
-        return;
-    }
+}
+
+/* A heel strike ends a step and begins the next. */
+static void end_step(saddle_step_tracker_t *tracker, bool velocity_known)
+{
     const float known_m_s = tracker->v_comp_m_s;
     const bool bounded = tracker->disturbed && tracker->v_comp_known;
     tracker->v_comp_known = false;
@@ -55,6 +57,18 @@ static void follow_speed(saddle_step_tracker_t *tracker, bool velocity_known, fl
     tracker->step_open = velocity_known;
     tracker->step_distance_m = 0.0f;
     tracker->step_duration_s = 0.0f;
+}
+
+/* A heel strike, since_s ago: the velocity changed evenly within the tick. */
+static void follow_strike(saddle_step_tracker_t *tracker, bool velocity_known, float velocity_m_s,
+                          float dt_s, float since_s)
+{
+    const bool measured_before = tracker->step_open && dt_s > 0.0f;
+    const float share = measured_before ? since_s / dt_s : 0.0f;
+    const float at_strike_m_s = velocity_m_s + share * (tracker->last_velocity_m_s - velocity_m_s);
+    follow_speed(tracker, velocity_known, at_strike_m_s, dt_s - since_s);
+    end_step(tracker, velocity_known);
+    follow_speed(tracker, velocity_known, velocity_m_s, since_s);
 }
 
 static void follow_step(saddle_step_tracker_t *tracker, const saddle_measurement_t *measurement,
@@ -106,11 +120,17 @@ void saddle_track_steps(saddle_step_tracker_t *tracker, const saddle_model_t *mo
     const bool left = left_known && heel_strike(tracker, measurement, SADDLE_LEFT, dt_s);
     const bool right = right_known && heel_strike(tracker, measurement, SADDLE_RIGHT, dt_s);
     const bool strike = left || right;
+    const float velocity_m_s = measurement->com.velocity_m_s.x;
     tracker->struck = strike;
-    follow_speed(tracker, com_known, measurement->com.velocity_m_s.x, dt_s, strike);
     if (strike) {
-        tracker->stance = (uint8_t)(left ? SADDLE_LEFT : SADDLE_RIGHT);
-        tracker->since_strike_s = 0.0f;
+        const saddle_side_t side = left ? SADDLE_LEFT : SADDLE_RIGHT;
+        const float since_s =
+            saddle_smaller((float)measurement->foot[side].since_us * 1.0e-6f, dt_s);
+        follow_strike(tracker, com_known, velocity_m_s, dt_s, since_s);
+        tracker->stance = (uint8_t)side;
+        tracker->since_strike_s = since_s;
+    } else {
+        follow_speed(tracker, com_known, velocity_m_s, dt_s);
     }
     tracker->half_step_known = tracker->half_step_known && !strike;
     if (left_known && right_known) {

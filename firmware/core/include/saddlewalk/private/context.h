@@ -242,10 +242,10 @@ typedef struct {
 } saddle_step_tracker_t;
 
 typedef struct {
-    bool armed;   /**< a measurement has come: from then on all are needed */
-    bool stopped; /**< inputs were lost, and have not been good for resume_time_s since */
-    float lost_s; /**< since a measurement was last usable */
-    float good_s; /**< since all that is needed is usable */
+    bool armed;           /**< a measurement has come: from then on all are needed */
+    bool stopped;         /**< inputs were lost, and have not been good for resume_time_s since */
+    float lost_s;         /**< since a measurement was last usable */
+    float good_s;         /**< since all that is needed is usable */
     bool stand_commanded; /**< since the stop */
 } saddle_safe_state_t;
 
