@@ -9,9 +9,11 @@ import time
 import pytest
 
 from host_node import own_lcm
+from saddlewalk.cli import main
 from saddlewalk.contract import RIGHT, STARTING, TICK_S
 from saddlewalk.emulation.exoskeleton import Exoskeleton, Observer
 from saddlewalk.emulation.host import running_host
+from saddlewalk.emulation.pace import Pace
 from saddlewalk.emulation.paced_ticks import ARRIVALS, WAKE_UP_S, PacedTicks
 from saddlewalk.emulation.punctuality import Punctuality, Stall
 from saddlewalk.errors import UserError
@@ -108,6 +110,27 @@ def test_a_walk_starts_at_the_same_tick_on_the_same_foot(clock, seed):
     assert start.seen == (1.04, RIGHT)
 
 
+def test_a_computer_that_is_busy_is_lent_the_time(monkeypatch):
+    """Ticks of 80 ms, one of which takes 0.5 s; the walk goes on from there."""
+    now_s, slept_s = 10.0, []
+
+    def sleep(for_s):
+        nonlocal now_s
+        slept_s.append(for_s)
+        now_s += for_s
+
+    monkeypatch.setattr(time, "monotonic", lambda: now_s)
+    monkeypatch.setattr(time, "sleep", sleep)
+    pace = Pace()
+    for work_s in (0.01, 0.0, 0.5, 0.03):
+        now_s += work_s
+        pace.wait()
+    assert slept_s == pytest.approx([0.07, 0.08, 0.05])
+    assert pace.lent_s == pytest.approx(0.42)
+    assert pace.words() == "slower than real time by 0.42 s, as this computer was busy"
+    assert Pace().words() == "in real time"
+
+
 def test_stalls_are_kept_with_their_time_and_the_longest_before_a_fall_is_found():
     punctuality = Punctuality()
     late_s = {1.0: 0.01, 1.01: 0.3, 1.02: 0.29, 1.3: 0.09, 1.4: 0.02, 4.0: 0.1, 4.2: 0.0, 8.0: 0.5}
@@ -124,18 +147,36 @@ def test_stalls_are_kept_with_their_time_and_the_longest_before_a_fall_is_found(
     )
 
 
-def test_a_fall_after_a_stall_mentions_the_stall(tmp_path):
+def stopped_demo(folder, until: str, *options: str) -> tuple[int, str]:
+    """Status and output of a demo whose process stands still for 0.5 s after that word."""
     program = [sys.executable, "-c", "from saddlewalk.cli import main; raise SystemExit(main())"]
-    walk = ["demo", "--speed", "1.2", "--duration", "4.5", "--push", "80@3:90"]
-    ports = ["--can", private_udp(), "--lcm", own_lcm(), "--out", str(tmp_path)]
-    with subprocess.Popen([*program, *walk, *ports], stdout=subprocess.PIPE, text=True) as process:
-        while "push of" not in process.stdout.readline():
+    ports = ["--can", private_udp(), "--lcm", own_lcm(), "--out", str(folder)]
+    command = [*program, "demo", *options, *ports]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        while until not in process.stdout.readline():
             assert process.poll() is None
         process.send_signal(signal.SIGSTOP)
         time.sleep(0.5)
         process.send_signal(signal.SIGCONT)
         printed = process.stdout.read()
-    assert process.returncode == 1
+    return process.returncode, printed
+
+
+def test_a_paced_walk_that_stood_still_goes_on_as_if_it_had_not(tmp_path):
+    walk = ["--speed", "1.2", "--duration", "4"]
+    status, printed = stopped_demo(tmp_path / "paced", "starting", *walk)
+    late_s = float(re.search(r"slower than real time by (\S+) s", printed)[1])
+    assert status == 0 and late_s > 0.35
+    ports = ["--can", private_udp(), "--lcm", own_lcm(), "--out", str(tmp_path / "whole")]
+    assert main(["demo", *walk, "--clock", "lockstep", *ports]) == 0
+    one, two = ((tmp_path / name / "walk.csv").read_bytes() for name in ("paced", "whole"))
+    assert one == two
+
+
+def test_a_fall_after_a_stall_mentions_the_stall(tmp_path):
+    walk = ["--clock", "realtime", "--speed", "1.2", "--duration", "4.5", "--push", "80@3:90"]
+    status, printed = stopped_demo(tmp_path, "push of", *walk)
+    assert status == 1
     stalled = re.search(
         r"BAD  the wearer fell at (\S+) s, (\S+) s after this computer had stalled the wearer's "
         r"process for (\S+) s",

@@ -15,6 +15,7 @@ from saddlewalk.commands.emulate import (
     add_walk_options,
     clock_of,
     events_printer,
+    host_clock_of,
     speeds_of,
     summary,
     treadmill_of,
@@ -88,6 +89,7 @@ def add_parser(subparsers: Any) -> None:
         parser,
         pace=", ".join(f"{speed_m_s:g} m/s from {from_s:g} s" for from_s, speed_m_s in SPEEDS),
         duration_s=DURATION_S,
+        clock="paced",
         push=f"{PUSH_N_S_KG:.3f} N s/kg backward at {' and '.join(map(str, PUSH_TIMES_S))} s, "
         "unless --speed or --schedule is given",
     )
@@ -237,7 +239,7 @@ def _page(args: argparse.Namespace) -> "contextlib.AbstractContextManager[PageBe
 def _clock(args: argparse.Namespace) -> str:
     """The chosen clock, or the firmware's default; a controller has lockstep only."""
     if args.firmware == HOST:
-        return clock_of(args)
+        return clock_of(args, "paced")
     given = (
         ("clock", args.clock, "lockstep"),
         ("can", args.can, "auto"),
@@ -274,7 +276,7 @@ def _host(
     from saddlewalk.emulation.host import running_host
     from saddlewalk.transport.bus import open_bus
 
-    options = [f"--can={args.can}", f"--clock={args.clock}", *host_arguments(config)]
+    options = [f"--can={args.can}", f"--clock={host_clock_of(args.clock)}", *host_arguments(config)]
     options += [f"--lcm={args.lcm}"] if args.lcm else []
     options += [f"--command-key={args.command_key}"] if args.command_key else []
     options += [f"--learn={bound}" for bound in args.learn]
@@ -386,8 +388,9 @@ def _finish(
     """Print the result; returns 0 only if all checks passed."""
     print(summary(wearer, exoskeleton))
     print(level_times(recorder) + (", until the fall" if wearer.fallen else ""))
-    if exoskeleton.punctuality:
-        print(f"timing: {exoskeleton.punctuality.words()}")
+    timing = exoskeleton.punctuality or exoskeleton.pace
+    if timing:
+        print(f"timing: {timing.words()}")
     for good, words in checks:
         print(f"  {'ok ' if good else 'BAD'}  {words}")
     for path in (

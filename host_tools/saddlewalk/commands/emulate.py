@@ -34,7 +34,7 @@ RIGHT_AHEAD_M = (
 
 def add_parser(subparsers: Any) -> None:
     parser = subparsers.add_parser("emulate", help="emulate a wearer for running firmware")
-    add_walk_options(parser, pace=f"{SPEED_M_S:g} m/s", duration_s=20.0)
+    add_walk_options(parser, pace=f"{SPEED_M_S:g} m/s", duration_s=20.0, clock="realtime")
     parser.add_argument(
         "--noise-scale",
         type=number_in(0, 100),
@@ -60,18 +60,19 @@ def add_parser(subparsers: Any) -> None:
 
 
 def add_walk_options(
-    parser: argparse.ArgumentParser, pace: str, duration_s: float, push: str = ""
+    parser: argparse.ArgumentParser, pace: str, duration_s: float, clock: str, push: str = ""
 ) -> None:
-    """Options of emulate and demo; `pace` and `push` describe the defaults."""
+    """Options of emulate and demo; `pace`, `clock` and `push` describe the defaults."""
     parser.add_argument(
         "--can", default="auto", metavar="SPEC", help="auto, socketcan:INTERFACE, udp[:GROUP:PORT]"
     )
     parser.add_argument("--lcm", metavar="URL", help="default: udpm on this machine")
     parser.add_argument(
         "--clock",
-        choices=("realtime", "lockstep"),
-        help="real time, or as fast as the firmware answers (default realtime; with --plant "
-        "mujoco lockstep, and no other)",
+        choices=("realtime", "paced", "lockstep"),
+        help="realtime: firmware and wearer by their own clocks; lockstep: in turns, as fast as "
+        "the firmware answers; paced: in turns, no faster than real time, so that a busy computer "
+        f"slows both down (default {clock}; with --plant mujoco lockstep, and no other)",
     )
     add_plant_options(parser)
     add_gait_options(parser, default_pace=pace)
@@ -134,7 +135,7 @@ def run(args: argparse.Namespace) -> int:
 
     key = read_key(args.command_key) if args.command_key else None
     plant = chosen_plant(args)
-    args.clock = clock_of(args)
+    args.clock = clock_of(args, "realtime")
     config = load_config(args, body=plant.fields)
     wearer = wearer_of(args, plant, config, Noise().scaled(args.noise_scale))
     schedule = schedule_of(speeds_of(args, [(0.0, SPEED_M_S)]), math.radians(args.hs_angle))
@@ -144,7 +145,8 @@ def run(args: argparse.Namespace) -> int:
         print(f"CAN: {describe(bus)}; clock: {args.clock}", flush=True)
         events = events_printer(wearer)
         ways = faulty(bus, lcm, occurrences, args.seed) if occurrences else (bus, lcm)
-        start = "start saddlewalk-host there with the same --clock and --lcm"
+        host_clock = host_clock_of(args.clock)
+        start = f"start saddlewalk-host there with --clock {host_clock} and the same --lcm"
         exoskeleton = Exoskeleton(
             *(ways[0], wearer, config, schedule, ways[1], [events]),
             fresh=False,
@@ -166,7 +168,7 @@ def _occurrences(args: argparse.Namespace) -> "list[Occurrence]":
 
     if args.faults is None:
         return []
-    if args.clock == "lockstep":
+    if args.clock != "realtime":
         raise UserError(
             "--faults needs --clock realtime: in lockstep the firmware waits for a lost frame"
         )
@@ -181,13 +183,18 @@ def _occurrences(args: argparse.Namespace) -> "list[Occurrence]":
     return occurrences
 
 
-def clock_of(args: argparse.Namespace) -> str:
+def clock_of(args: argparse.Namespace, default: str) -> str:
     """The choice of --clock; MuJoCo has a simulated clock only."""
     if args.plant != MUJOCO:
-        return args.clock or "realtime"
-    if args.clock == "realtime":
-        raise UserError(f"--clock realtime: not with --plant {MUJOCO}, leave it out")
+        return args.clock or default
+    if args.clock not in (None, "lockstep"):
+        raise UserError(f"--clock {args.clock}: not with --plant {MUJOCO}, leave it out")
     return "lockstep"
+
+
+def host_clock_of(clock: str) -> str:
+    """saddlewalk-host's: it takes its turns whatever the pace is."""
+    return "realtime" if clock == "realtime" else "lockstep"
 
 
 def wearer_of(

@@ -14,6 +14,7 @@ import numpy as np
 from saddlewalk import core
 from saddlewalk.contract import LEFT, RIGHT, STAND, STANDING, TICK_S, WALK
 from saddlewalk.emulation import plans
+from saddlewalk.emulation.pace import Pace
 from saddlewalk.emulation.paced_ticks import WAKE_UP_S, PacedTicks
 from saddlewalk.emulation.punctuality import Punctuality
 from saddlewalk.emulation.treadmill import Treadmill
@@ -143,6 +144,7 @@ class Exoskeleton:
         self.health: dict[str, float] = {}  # the newest
         self.mode: int | None = None  # of the newest plan; None without one
         self.punctuality: Punctuality | None = None  # in real time
+        self.pace: Pace | None = None  # if that is kept
         self._bus, self._lcm, self._wearer, self._schedule = bus, lcm, wearer, schedule
         self._observers = tuple(observers)
         self._fresh, self._if_silent = fresh, if_silent
@@ -157,19 +159,26 @@ class Exoskeleton:
         self._pushed_n_s = 0j
 
     def run(self, clock: str, duration_s: float) -> None:
-        """Walk for duration_s by the clock `realtime` or `lockstep`.
+        """Walk for duration_s by the clock `realtime`, or in `lockstep`, or `paced`: in lockstep no
+        faster than real time.
 
         Raises UserError if the firmware is silent or plans no walk.
         """
-        (self._run_lockstep if clock == "lockstep" else self._run_realtime)(duration_s)
+        if clock == "realtime":
+            self._run_realtime(duration_s)
+        else:
+            self.pace = Pace() if clock == "paced" else None
+            self._run_lockstep(duration_s)
 
     def _run_lockstep(self, duration_s: float) -> None:
-        """As fast as the firmware answers: one set of measurements, one tick, 80 ms of physics."""
+        """One set of measurements, one tick, 80 ms of physics, as fast as the firmware answers."""
         while self._goes_on(duration_s):
             self._take(self._exchange())
             self._advance(round(TICK_S / STEP_S))
             self._publish_truth()
             self._poll()
+            if self.pace:
+                self.pace.wait()
         self._begun = False
         self._send_command_frame(self._wearer.time_s)
 
