@@ -168,7 +168,7 @@ static void bring_foot(const saddle_past_plan_t *now, const part_t *part,
 }
 
 /* [E46] */
-saddle_side_t saddle_bring_forward(const saddle_past_t *past, const saddle_model_t *model,
+SADDLE_NOINLINE saddle_side_t saddle_bring_forward(const saddle_past_t *past, const saddle_model_t *model,
                                    const saddle_measurement_t *measured,
                                    saddle_measurement_t *present)
 {
