@@ -544,6 +544,28 @@ static void test_encoders_that_stand_still_are_not_lost(void)
     }
 }
 
+static void test_contact_is_dated_to_the_step(void)
+{
+    double t = 0.0;
+    walk(&t, LEFT_STANCE_S, 0.001);
+    saddle_sensors_t sensors = readings(&t);
+    sensors.load_n[0] = 0.0f;
+    update(&sensors);
+    TEST_ASSERT_FALSE(estimate.measurement.foot[0].contact);
+    TEST_ASSERT_EQUAL_UINT32(0u, estimate.measurement.foot[0].since_us);
+    sensors.time_us += 2000u;
+    update(&sensors);
+    TEST_ASSERT_EQUAL_UINT32(2000u, estimate.measurement.foot[0].since_us);
+    sensors.time_us += 1000u;
+    sensors.load_n[0] = 600.0f;
+    update(&sensors);
+    TEST_ASSERT_TRUE(estimate.measurement.foot[0].contact);
+    TEST_ASSERT_EQUAL_UINT32(0u, estimate.measurement.foot[0].since_us);
+    sensors.time_us -= 500u; /* a clock that goes back */
+    update(&sensors);
+    TEST_ASSERT_EQUAL_UINT32(0u, estimate.measurement.foot[0].since_us);
+}
+
 static void test_old_joints_and_lost_loads_age_their_foot(void)
 {
     double t = 0.0;
@@ -693,6 +715,7 @@ int main(void)
     RUN_TEST(test_an_encoder_that_leaps_is_lost);
     RUN_TEST(test_a_frozen_encoder_of_a_moving_leg_is_lost);
     RUN_TEST(test_encoders_that_stand_still_are_not_lost);
+    RUN_TEST(test_contact_is_dated_to_the_step);
     RUN_TEST(test_old_joints_and_lost_loads_age_their_foot);
     RUN_TEST(test_a_lost_stance_leg_leaves_the_anchor_to_the_other);
     RUN_TEST(test_an_ankle_that_is_turned_on_its_shaft_is_a_tilt);

@@ -168,6 +168,13 @@ static uint32_t age_us(float age_s)
     return age_s >= AGE_MAX_S ? SADDLE_AGE_NEVER_US : (uint32_t)(1.0e6f * age_s);
 }
 
+/* The contact is what it is. */
+static uint32_t since_us(const saddle_estimator_t *estimator, unsigned side)
+{
+    const uint64_t since = estimator->time_us - estimator->contact_from_us[side];
+    return since < UINT32_MAX ? (uint32_t)since : UINT32_MAX;
+}
+
 static void write_measurement(const saddle_estimator_t *estimator, saddle_estimate_t *estimate)
 {
     saddle_measurement_t *measurement = &estimate->measurement;
@@ -180,6 +187,7 @@ static void write_measurement(const saddle_estimator_t *estimator, saddle_estima
             saddle_vec3_sub(estimate->body.foot[side].sole_m, com->position_m);
         measurement->foot[side].cop_m = (saddle_vec2_t){from_com_m.x, from_com_m.y};
         measurement->foot[side].contact = estimator->contact[side];
+        measurement->foot[side].since_us = since_us(estimator, side);
         measurement->foot[side].age_us = age_us(estimator->foot_age_s[side]);
     }
 }

@@ -53,6 +53,15 @@ saddle_imu_t saddle_imu_reading(const saddle_estimator_t *estimator,
     return imu;
 }
 
+static void follow_contact(saddle_estimator_t *estimator, unsigned side, bool contact,
+                           uint64_t time_us)
+{
+    if (contact != estimator->contact[side] || time_us < estimator->contact_from_us[side]) {
+        estimator->contact_from_us[side] = time_us;
+    }
+    estimator->contact[side] = contact;
+}
+
 uint32_t saddle_load_readings(saddle_estimator_t *estimator, const saddle_sensors_t *sensors)
 {
     const saddle_estimator_config_t *config = &estimator->config;
@@ -67,7 +76,7 @@ uint32_t saddle_load_readings(saddle_estimator_t *estimator, const saddle_sensor
         const float threshold_n =
             estimator->contact[side] ? config->contact_off_n : config->contact_on_n;
         estimator->load_n[side] = saddle_larger(load_n, 0.0f);
-        estimator->contact[side] = load_n > threshold_n;
+        follow_contact(estimator, side, load_n > threshold_n, sensors->time_us);
     }
     return faults;
 }
