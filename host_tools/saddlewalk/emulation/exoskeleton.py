@@ -355,8 +355,8 @@ class Exoskeleton:
     def _belt_m_s(self, every_s: float) -> float:
         if self._treadmill is None:
             return 0.0
-        mode, speed_m_s, _ = self._command(self._wearer.time_s)
-        self._treadmill.run(speed_m_s if mode == WALK else 0.0, every_s)
+        command = self._command(self._wearer.time_s)
+        self._treadmill.run(command["SPEED"] if command["MODE"] == WALK else 0.0, every_s)
         return self._treadmill.belt_m_s
 
     def _command_in_real_time(self) -> None:
