@@ -256,9 +256,10 @@ def test_the_table_has_the_margin_as_lcm_has_it(walk):
 
 
 def test_demo_in_real_time(tmp_path, ports):
-    options = ["demo", "--out", str(tmp_path), *ports, "--duration", "2", "--push", "5@1:0"]
+    options = ["--clock", "realtime", "--out", str(tmp_path), *ports, "--duration", "2"]
+    options += ["--push", "5@1:0"]
     program = [sys.executable, "-c", "from saddlewalk.cli import main; raise SystemExit(main())"]
-    done = subprocess.run([*program, *options], capture_output=True, text=True, check=False)
+    done = subprocess.run([*program, "demo", *options], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert {path.name for path in tmp_path.iterdir()} == FILES
     assert len(rows(tmp_path)) >= 2 / TICK_S - 2

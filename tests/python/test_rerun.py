@@ -58,9 +58,9 @@ def test_a_log_is_recomputed_bit_for_bit(walk, capsys):
 
 def test_a_run_in_real_time_is_recomputed_bit_for_bit(tmp_path, capsys):
     """With the ages that its measurements had; of which a CAN log does not know."""
-    options = ["--can", private_udp(), "--lcm", own_lcm()]
+    options = ["--can", private_udp(), "--lcm", own_lcm(), "--out", str(tmp_path)]
     body = ["--height", "1.6", "--mass", "48.123"]
-    assert main(["demo", "--duration", "2", "--out", str(tmp_path), *options, *body]) == 0
+    assert main(["demo", "--clock", "realtime", "--duration", "2", *options, *body]) == 0
     status, shown, _ = rerun(tmp_path / "walk.lcmlog", capsys)
     assert status == 0 and "real time: 1 run" in shown
     status, _, shown = rerun(tmp_path / "walk.candump.log", capsys, *body)

@@ -168,9 +168,10 @@ static void bring_foot(const saddle_past_plan_t *now, const part_t *part,
 }
 
 /* [E46] */
-SADDLE_NOINLINE saddle_side_t saddle_bring_forward(const saddle_past_t *past, const saddle_model_t *model,
-                                   const saddle_measurement_t *measured,
-                                   saddle_measurement_t *present)
+SADDLE_NOINLINE saddle_side_t saddle_bring_forward(const saddle_past_t *past,
+                                                   const saddle_model_t *model,
+                                                   const saddle_measurement_t *measured,
+                                                   saddle_measurement_t *present)
 {
     const float w = model->body.natural_frequency_rad_s;
     const saddle_past_plan_t *now = &past->plans[slot(past, 0u)];

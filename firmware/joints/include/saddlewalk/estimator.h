@@ -104,7 +104,7 @@ typedef struct {
     saddle_estimator_config_t config;
     bool initialised, started;
     uint64_t time_us;
-    uint64_t contact_from_us[2]; /**< when each foot's contact was first what it is */
+    uint64_t contact_from_us[2];  /**< when each foot's contact was first what it is */
     saddle_quaternion_t attitude; /**< of the trunk */
     saddle_vec3_t gyro_rad_s, bias_rad_s;
     float still_s;
