@@ -239,7 +239,6 @@ static void read_settings(saddle_settings_t *settings)
         page[i] = any_uint32;
     }
     (void)saddle_settings_read(page, settings);
-    saddle_settings_write(page, settings);
 }
 
 static void read_serial_line(void)
