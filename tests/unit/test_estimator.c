@@ -561,7 +561,10 @@ static void test_contact_is_dated_to_the_step(void)
     update(&sensors);
     TEST_ASSERT_TRUE(estimate.measurement.foot[0].contact);
     TEST_ASSERT_EQUAL_UINT32(0u, estimate.measurement.foot[0].since_us);
-    sensors.time_us -= 500u; /* a clock that goes back */
+    sensors.time_us += UINT64_C(1) << 33; /* for longer than can be said */
+    update(&sensors);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, estimate.measurement.foot[0].since_us);
+    sensors.time_us = 500u; /* a clock that goes back */
     update(&sensors);
     TEST_ASSERT_EQUAL_UINT32(0u, estimate.measurement.foot[0].since_us);
 }

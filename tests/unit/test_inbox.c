@@ -142,6 +142,8 @@ static void test_contact_is_dated_within_the_tick(void)
             TEST_ASSERT_EQUAL_UINT32(10000u * n, foot[SADDLE_RIGHT].since_us);
         }
     }
+    send_set(32, 3, UINT64_C(1) << 33); /* for longer than can be said */
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, inbox.input.measurement.foot[SADDLE_LEFT].since_us);
     left_contact = false;
 }
 
