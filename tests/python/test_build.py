@@ -46,7 +46,11 @@ def test_a_missing_product_is_named_with_the_command_that_makes_it(monkeypatch, 
         ("VERSION : 48|8@1+ (1,0)", "VERSION : 48|8@1+ (2,0)", "unsigned with scale 2: must be 1"),
         ("COUNTER : 8|4@1+", "COUNTER : 8|3@1+", "SENSED_GYRO must begin with CRC, 0|8, and COUN"),
         ('VAL_ 256 SPEED -32768 "NOT_AVAILABLE" ;', "", "signed without a word for -32768"),
-        ("BO_ 273 MEASURED_LEFT: 8", "BO_ 273 MEASURED_LEFT: 7", "must be a classic frame of 8 b"),
+        (
+            "BO_ 308 SCORES_EXPECTED: 8",
+            "BO_ 308 SCORES_EXPECTED: 7",
+            "must be a classic frame of 8 b",
+        ),
         (
             "SG_ ROLL : 32|16@1- (0.0001,0)",
             "SG_ ROLL : 32|16@1- (0.001,0)",

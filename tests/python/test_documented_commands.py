@@ -50,6 +50,7 @@ NOT_RUN = {
     "make physics": "packages from the network",
     ".venv/bin/saddlewalk demo --plant mujoco": "half a minute, and MuJoCo: test_physics.py",
     ".venv/bin/saddlewalk endure": "minutes: test_physics.py",
+    ".venv/bin/saddlewalk chain": "half a minute to minutes, and MuJoCo: test_chain.py",
     "make controller": "a cross-compiler and QEMU: test_controller.py",
 }
 
