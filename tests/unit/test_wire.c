@@ -544,6 +544,8 @@ static void test_a_code_authenticates_one_command_once(void)
     TEST_ASSERT_FALSE(accepts(8, 20)); /* of another session */
     TEST_ASSERT_EQUAL_UINT32(3, receiver.bad_code);
     TEST_ASSERT_TRUE(accepts(7, 21));
+    TEST_ASSERT_FALSE(accepts(7, 21)); /* the same frames again */
+    TEST_ASSERT_EQUAL_UINT32(4, receiver.bad_code);
     TEST_ASSERT_EQUAL_UINT32(0, receiver.bad_counter);
 }
 
