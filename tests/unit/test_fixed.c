@@ -109,6 +109,8 @@ static void test_sum_of_angles_stays_within_half_a_turn(void)
         TEST_ASSERT_TRUE(fabs(sum) <= pi + 1e-12);
         TEST_ASSERT_DOUBLE_WITHIN(1e-11, 0.0, remainder((double)a + (double)b - sum, 2.0 * pi));
     }
+    const saddle_fixed_t half_turn = saddle_speed_from_m_s(3.2f); /* limited */
+    TEST_ASSERT_TRUE(saddle_angle_sum(half_turn, 0) > 0 && saddle_angle_sum(-half_turn, 0) < 0);
 }
 
 static void test_share_of_a_length(void)

@@ -925,7 +925,8 @@ static void test_turning_rate_is_limited_to_what_the_speed_bears(void)
         bool limited;
     } table[] = {{1.2f, 0.28f, false}, {1.2f, -0.31f, true},  {0.6f, 0.6f, false},
                  {0.6f, 0.63f, true},  {0.05f, 0.08f, false}, {0.05f, 0.1f, true},
-                 {1.9f, 0.02f, false}, {1.9f, 0.25f, true},   {0.0f, 5.0f, false}};
+                 {1.9f, 0.02f, false}, {1.9f, 0.25f, true},   {0.0f, 5.0f, false},
+                 {1.2f, 1.0f, true}};
     for (size_t i = 0; i < COUNT_OF(table); i++) {
         stand(table[i].speed_m_s);
         command.turn_rate_rad_s = table[i].rate_rad_s;

@@ -71,7 +71,9 @@ static void test_no_measurement_never_came(void)
     for (int side = 0; side < 2; side++) {
         ASSERT_SAME_FLOAT(0.0f, none.foot[side].cop_m.x);
         ASSERT_SAME_FLOAT(0.0f, none.foot[side].cop_m.y);
+        ASSERT_SAME_FLOAT(0.0f, none.foot[side].ground_m_s);
         TEST_ASSERT_FALSE(none.foot[side].contact);
+        TEST_ASSERT_EQUAL_UINT32(0, none.foot[side].since_us);
         TEST_ASSERT_EQUAL_UINT32(SADDLE_AGE_NEVER_US, none.foot[side].age_us);
     }
 }

@@ -214,6 +214,15 @@ static void test_nothing_is_brought_further_forward_than_a_fifth_of_a_second(voi
     ASSERT_SAME_FLOAT(at_bound.foot[1].cop_m.y, present.foot[1].cop_m.y);
 }
 
+static void test_no_more_plans_are_remembered_than_there_is_room_for(void)
+{
+    for (uint32_t k = 0; k < 3u * SADDLE_PAST_PLANS; k++) {
+        saddle_remember_plan(&past, &plan, (uint32_t)plan.origin_x_nm, TICK_US);
+        TEST_ASSERT_TRUE(past.count <= SADDLE_PAST_PLANS && past.newest < SADDLE_PAST_PLANS);
+    }
+    TEST_ASSERT_EQUAL_UINT8(SADDLE_PAST_PLANS, past.count);
+}
+
 /* As after the first tick: the plan stands still, and only the departure goes on. */
 static void test_before_a_plan_is_remembered_it_counts_as_the_present_one(void)
 {
@@ -259,6 +268,7 @@ int main(void)
     RUN_TEST(test_between_two_ticks_the_plan_moves_evenly);
     RUN_TEST(test_close_ticks_reach_as_far_back);
     RUN_TEST(test_nothing_is_brought_further_forward_than_a_fifth_of_a_second);
+    RUN_TEST(test_no_more_plans_are_remembered_than_there_is_room_for);
     RUN_TEST(test_before_a_plan_is_remembered_it_counts_as_the_present_one);
     RUN_TEST(test_a_foot_that_landed_early_stays_and_nothing_grows);
     return UNITY_END();
