@@ -47,6 +47,10 @@ int saddle_lcm_encode_turn(const saddle_input_t *input, uint8_t bytes[SADDLE_LCM
  *  exactly one. */
 bool saddle_lcm_decode_turn(const uint8_t *bytes, int size, saddle_input_t *input);
 
+/** feet_t, what input_t lacks as well; the same as for turn_t. */
+int saddle_lcm_encode_feet(const saddle_input_t *input, uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
+bool saddle_lcm_decode_feet(const uint8_t *bytes, int size, saddle_input_t *input);
+
 /** sensors_t. Returns the size in bytes. */
 int saddle_lcm_encode_sensors(const saddle_sensors_t *sensors, const saddle_estimate_t *estimate,
                               uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
@@ -54,10 +58,6 @@ int saddle_lcm_encode_sensors(const saddle_sensors_t *sensors, const saddle_esti
 /** joints_t. Returns the size in bytes. */
 int saddle_lcm_encode_joints(const saddle_joint_commands_t *commands, int64_t utime_us,
                              uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
-
-/** feet_t, what input_t lacks as well; the same as for turn_t. */
-int saddle_lcm_encode_feet(const saddle_input_t *input, uint8_t bytes[SADDLE_LCM_MESSAGE_MAX]);
-bool saddle_lcm_decode_feet(const uint8_t *bytes, int size, saddle_input_t *input);
 
 /** config_t. Returns the size in bytes. */
 int saddle_lcm_encode_config(const saddle_config_t *config, uint64_t time_us, bool lockstep,

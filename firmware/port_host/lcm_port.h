@@ -21,8 +21,8 @@ typedef struct {
  *  lost later is announced, and used again when it is back. */
 bool saddle_lcm_open(saddle_lcm_port_t *port, const char *url);
 
-/** SADDLEWALK_INPUT, _TURN, _FEET, _PLAN, _SCORES, _VERDICT, _BALANCE, _BOS, _WAY, _STATUS and, last, _HEALTH,
- *  all with the utime_us of the input and health's tick. */
+/** SADDLEWALK_INPUT, _TURN, _FEET, _PLAN, _SCORES, _VERDICT, _BALANCE, _BOS, _WAY, _STATUS and, last,
+ *  _HEALTH, all with the utime_us of the input and health's tick. */
 void saddle_lcm_publish(saddle_lcm_port_t *port, const saddle_input_t *input,
                         const saddle_output_t *output, const saddlewalk_status_t *status,
                         const saddlewalk_health_t *health);

@@ -31,7 +31,9 @@ def lines(status: Any) -> list[str]:
 
 
 def timing(status: Any) -> str:
-    """Timing of the ticks."""
+    """Timing of the ticks. In lockstep the process has no clock, and nothing takes time."""
+    if status.latency_max_us == status.work_us == 0:
+        return f"timing: in lockstep, {status.missed_ticks} ticks missed"
     below_us = latency_below_us(status.latencies, USUAL)
     usual = "" if below_us is None else f"{USUAL:.0%} below {below_us / 1000:g} ms, "
     parts = [

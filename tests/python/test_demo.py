@@ -92,7 +92,7 @@ def test_demo_records_a_sound_walk_that_reads_back(tmp_path, ports, capsys):
     assert re.search(r"1[0-4]\.\d\d s  caution: the body departs backward of the feet\n", shown)
     assert "stands at the end" in shown
     seen, *following = shown.splitlines()[-4:]
-    assert re.fullmatch("seen: 2 pushes, lowest level caution, [2-4] recovery steps, no fall", seen)
+    assert re.fullmatch("seen: 2 pushes, worst level caution, [2-4] recovery steps, no fall", seen)
     assert f" view {tmp_path}/walk.lcmlog  # in the browser" in following[0]
     assert f"{round(22 / TICK_S)} ticks recomputed from the log: the same bits\n" in shown
     assert_levels_printed(shown, [row["level"] for row in rows(tmp_path)])
@@ -237,6 +237,16 @@ def test_the_picture_marks_the_fall_and_keeps_the_com_in_view(tmp_path, ports):
     for axes in over_time:
         marks = [line.get_xdata() for line in axes.lines if line.get_label() == "fell"]
         assert [list(mark) for mark in marks] == [[fell_s, fell_s]]
+
+
+def test_the_part_from_above_has_the_pushes_of_its_time_alone(walk):
+    from saddlewalk.pictures.walk import figure_of, read_walk
+
+    config = load_config(argparse.Namespace(height=None, mass=None, config=None))
+    pushes = [Push(8, 5, 90), Push(9, 12, 90)]
+    above = figure_of(read_walk(walk / "walk.csv"), pushes, config, None).axes[3]
+    words = [text.get_text() for text in above.texts]
+    assert [text for text in words if text.startswith("push")] == ["push\n8 N·s"]
 
 
 def test_the_table_has_the_margin_as_lcm_has_it(walk):

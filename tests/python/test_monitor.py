@@ -333,10 +333,16 @@ def test_commands_from_other_machines_are_reported():
     assert "20 commands from other machines" in status_text.inputs(message)
 
 
+def test_a_process_in_lockstep_shows_no_times_of_a_clock():
+    message = status_t()
+    message.period_us, message.missed_ticks = 80_000, 0
+    assert status_text.timing(message) == "timing: in lockstep, 0 ticks missed"
+
+
 def test_a_healthy_process_reports_no_problems():
     message = status_t()
     message.can_link = message.lcm_link = status_t.LINK_UP
-    message.fifo_priority, message.memory_locked = 20, 1
+    message.fifo_priority, message.memory_locked, message.work_us = 20, 1, 90
     timing, inputs, transports = status_text.lines(message)
     assert timing.endswith("0 ticks missed, SCHED_FIFO 20, memory locked")
     assert inputs.endswith("0 frames accepted")

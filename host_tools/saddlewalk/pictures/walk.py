@@ -203,7 +203,8 @@ def draw_above(axes: Axes, walk: Columns, pushes: Sequence[Push], config: Any) -
     axes.plot(walk["plan_com_x_m"], walk["plan_com_y_m"], "k--", lw=1.2, label="CoM, planned")
     axes.plot(walk["true_com_x_m"], walk["true_com_y_m"], color=BLUE, lw=2.2, label="CoM")
     for push in pushes:
-        _draw_push(axes, walk, push)
+        if walk["t_s"][0] <= push.time_s <= walk["t_s"][-1]:
+            _draw_push(axes, walk, push)
     axes.set_aspect("equal")
     axes.set(xlabel="forward (m)", ylabel="to the left (m)")
     axes.set_xlim(walk["true_com_x_m"].min() - 0.2, walk["true_com_x_m"].max() + 0.2)
