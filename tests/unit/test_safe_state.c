@@ -20,14 +20,14 @@ void tearDown(void) {}
 
 static bool update_of(uint32_t faults, bool unstable)
 {
-    const saddle_seen_t seen = {faults, unstable, false};
-    return saddle_safe_state_update(&state, model_of(&config), &seen, DT_S);
+    const saddle_safe_inputs_t inputs = {faults, unstable, false};
+    return saddle_safe_state_update(&state, model_of(&config), &inputs, DT_S);
 }
 
 static bool update_under_a_stand(uint32_t faults)
 {
-    const saddle_seen_t seen = {faults, false, true};
-    return saddle_safe_state_update(&state, model_of(&config), &seen, DT_S);
+    const saddle_safe_inputs_t inputs = {faults, false, true};
+    return saddle_safe_state_update(&state, model_of(&config), &inputs, DT_S);
 }
 
 static bool update(uint32_t faults)

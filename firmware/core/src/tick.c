@@ -105,7 +105,7 @@ static uint32_t take_command(saddle_context_t *context, const saddle_input_t *in
     return faults;
 }
 
-/* Of the ground that carries the wearer: under the one foot that stands, else midway. */
+/* Of the ground that carries the wearer: under the one foot that stands, else the mean. */
 static float ground_speed_m_s(const saddle_measurement_t *measured)
 {
     float speed_m_s[2];
@@ -270,13 +270,13 @@ saddle_status_t saddle_tick(saddle_context_t *context, const saddle_input_t *inp
                                  saddle_planner_speed_m_s(&context->planner), sensed.dt_s);
     output->faults = take_command(context, input);
     const saddle_command_t *command = &context->command;
-    const saddle_seen_t seen = {
+    const saddle_safe_inputs_t inputs = {
         .faults = sensed.faults | output->faults,
         .unstable = context->supervisor.level.level == (uint8_t)SADDLE_LEVEL_UNSTABLE,
         .stands = command->mode == (uint8_t)SADDLE_COMMAND_STAND || !(command->speed_m_s > 0.0f),
     };
     const bool stop =
-        saddle_safe_state_update(&context->safe_state, &context->model, &seen, sensed.dt_s);
+        saddle_safe_state_update(&context->safe_state, &context->model, &inputs, sensed.dt_s);
     plan_walk(context, &sensed, stop, dt_us, output);
     supervise(context, &sensed, output);
     move_landing(context, &output->plan);

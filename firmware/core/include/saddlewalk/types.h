@@ -94,7 +94,7 @@ typedef struct {
                                      device with a safe state of its own */
     float resume_time_s;        /**< inputs that were lost must be good for so long, and nobody
                                      unstable */
-    float resume_by_command;    /**< 1: and a stand must be commanded before the walk goes on; 0:
+    float resume_by_command;    /**< 1: a stand must be commanded too before the walk goes on; 0:
                                      it goes on by itself */
     float com_max_age_s;        /**< older measurements of the CoM are not used */
     float foot_max_age_s;       /**< nor of a foot's CoP and contact */
@@ -172,18 +172,18 @@ typedef struct {
 /** The CoM as measured. */
 typedef struct {
     float height_m;             /**< above the ground */
-    saddle_vec2_t velocity_m_s; /**< in the room, where ground_m_s of the feet counts from */
+    saddle_vec2_t velocity_m_s; /**< in the frame of ground_m_s: on a floor, over it */
     uint32_t age_us;            /**< at the time of the tick, or SADDLE_AGE_NEVER_US */
 } saddle_measured_com_t;
 
 /** A foot as measured. */
 typedef struct {
     saddle_vec2_t cop_m; /**< middle of the sole, relative to the CoM */
-    float ground_m_s;  /**< speed along x of the ground under it; of a treadmill's belt, negative as
-                            it runs backward; 0: a floor */
-    bool contact;      /**< on the ground */
-    uint32_t since_us; /**< for how long contact had been so when it was measured; 0: not known, and
-                            it changed when it was measured */
+    float ground_m_s;    /**< speed along x of the ground under it: 0 on a floor, negative for a
+                              treadmill's belt, which runs backward */
+    bool contact;        /**< on the ground */
+    uint32_t since_us; /**< how long the contact had lasted, or been lost, when it was measured; 0:
+                            it changed then, or the date is not known */
     uint32_t age_us;   /**< at the time of the tick, or SADDLE_AGE_NEVER_US */
 } saddle_measured_foot_t;
 

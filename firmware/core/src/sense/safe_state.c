@@ -18,17 +18,17 @@ static bool may_resume(const saddle_safe_state_t *state, const saddle_model_t *m
 }
 
 bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_model_t *model,
-                              const saddle_seen_t *seen, float dt_s)
+                              const saddle_safe_inputs_t *inputs, float dt_s)
 {
-    const bool commanded = (seen->faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) == 0u;
-    const bool measured = (seen->faults & UNUSABLE) == 0u;
-    state->armed = state->armed || (seen->faults & STALE) != STALE;
+    const bool commanded = (inputs->faults & (uint32_t)SADDLE_FAULT_COMMAND_STALE) == 0u;
+    const bool measured = (inputs->faults & UNUSABLE) == 0u;
+    state->armed = state->armed || (inputs->faults & STALE) != STALE;
     state->lost_s = measured ? 0.0f : state->lost_s + dt_s;
-    const bool lost = (seen->faults & LOST) != 0u || state->lost_s > model->config.com_max_age_s;
-    const bool good = commanded && !seen->unstable && (measured || !state->armed);
+    const bool lost = (inputs->faults & LOST) != 0u || state->lost_s > model->config.com_max_age_s;
+    const bool good = commanded && !inputs->unstable && (measured || !state->armed);
     state->good_s = good ? state->good_s + dt_s : 0.0f;
     state->stand_commanded =
-        state->stopped && commanded && (state->stand_commanded || seen->stands);
+        state->stopped && commanded && (state->stand_commanded || inputs->stands);
     if (!commanded || (state->armed && lost)) {
         state->stopped = true;
     } else if (good && may_resume(state, model)) {

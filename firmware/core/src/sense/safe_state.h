@@ -8,7 +8,7 @@ typedef struct {
     uint32_t faults; /**< of the inputs, saddle_fault_t */
     bool unstable;   /**< announced by the last tick */
     bool stands;     /**< the command is a stand */
-} saddle_seen_t;
+} saddle_safe_inputs_t;
 
 /** Follow the inputs' saddle_fault_t bits. True while the walk must stop: from the tick in which the
  *  command is stale, a measurement is stale or frozen, or measurements have been unusable in another
@@ -16,7 +16,7 @@ typedef struct {
  *  resume_time_s; with resume_by_command a stand must have been commanded as well. A plan that never was given any measurement (SADDLE_AGE_NEVER_US) does not need them;
  *  feet that are together are no loss. */
 bool saddle_safe_state_update(saddle_safe_state_t *state, const saddle_model_t *model,
-                              const saddle_seen_t *seen, float dt_s);
+                              const saddle_safe_inputs_t *inputs, float dt_s);
 
 /** No tick for gap_s: a walk does not go on over one longer than step_time_max_s, after which nobody is
  *  known to walk. Call it before that tick's update. */
