@@ -246,6 +246,23 @@ static void test_step_time_and_v_comp_are_exact_within_the_tick(void)
     TEST_ASSERT_EQUAL_INT(12, strikes);
 }
 
+/* From 1 to 2 m/s in a tick, and the heel struck at half of it: 1.5 m/s. */
+static void test_velocity_at_a_strike_within_the_tick_is_between_the_measured_ones(void)
+{
+    measured.com.velocity_m_s.x = 1.0f;
+    track();
+    strike_with(SADDLE_LEFT);
+    measured.foot[SADDLE_RIGHT].contact = false;
+    track();
+    track();
+    measured.foot[SADDLE_RIGHT].contact = true;
+    measured.foot[SADDLE_RIGHT].since_us = 40000u;
+    measured.com.velocity_m_s.x = 2.0f;
+    track();
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, (0.16f * 1.0f + 0.04f * 1.25f) / 0.2f, tracker.v_comp_m_s);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.04f * 1.75f, tracker.step_distance_m);
+}
+
 /* A sensor that claims more: the strike was in this tick, or the last would have seen it. */
 static void test_strike_is_no_longer_ago_than_the_last_tick(void)
 {
@@ -506,6 +523,7 @@ int main(void)
     RUN_TEST(test_v_comp_is_the_mean_from_one_heel_strike_to_the_next);
     RUN_TEST(test_v_comp_weighs_each_tick_by_its_time);
     RUN_TEST(test_step_time_and_v_comp_are_exact_within_the_tick);
+    RUN_TEST(test_velocity_at_a_strike_within_the_tick_is_between_the_measured_ones);
     RUN_TEST(test_strike_is_no_longer_ago_than_the_last_tick);
     RUN_TEST(test_step_with_a_gap_in_the_velocity_gives_no_v_comp);
     RUN_TEST(test_step_that_begins_without_a_velocity_gives_no_v_comp);
